@@ -596,6 +596,8 @@ class Settings(Struct):
         ("filter_width", c_float),
         ("film_exposure", c_float),
         ("film_transparent", c_uint32),
+        ("film_transparent_glass", c_uint32),
+        ("film_transparent_roughness", c_float),
         ("roughness_threshold", c_float),
         ("strict", c_uint32),
         ("threads", c_uint32),

@@ -1,4 +1,4 @@
-"""Settings of Cycles that have a counterpart here: bounces, caustics, clamps, Filter Glossy, exposure, pixel filter.
+"""Settings of Cycles that have a counterpart here: bounces, caustics, clamps, Filter Glossy, film.
 
 A scene that was made for Cycles keeps them: unless Follow Cycles is off, they stand for those that were never set for
 Gradus.
@@ -20,6 +20,8 @@ SAME_NAME = (
     "caustics_reflective",
     "caustics_refractive",
     "film_exposure",
+    "film_transparent_glass",
+    "film_transparent_roughness",
     "filter_width",
 )
 
@@ -119,6 +121,27 @@ def _is_emission(node: Any) -> bool:
 
 def _may_be_positive(socket: Any, values: list[float]) -> bool:
     return socket.is_linked or any(value > 0.0 for value in values)
+
+
+_KINDS = ("diffuse", "glossy", "transmission")
+_PASSES_BEHIND_GLASS = (
+    ("Mist", ("use_pass_mist",)),
+    ("light passes", tuple(f"use_pass_{kind}_{part}" for kind in _KINDS for part in ("direct", "indirect", "color"))),
+    ("Cryptomatte", tuple(f"use_pass_cryptomatte_{kind}" for kind in ("object", "material", "asset"))),
+)
+"""Passes that show, in Cycles, also what is behind transparent glass, with the switches of a view layer."""
+
+
+def glass_warnings(view_layer: Any, is_transparent: bool) -> list[str]:
+    """Returns a warning about passes of a view layer if glass is transparent."""
+    listed = ", ".join(
+        name
+        for name, switches in _PASSES_BEHIND_GLASS
+        if any(getattr(view_layer, switch, False) for switch in switches)
+    )
+    if not is_transparent or not listed:
+        return []
+    return [f"With Transparent Glass, passes show glass, and in Cycles also what is behind it: {listed}"]
 
 
 def _ignored(scene: Any) -> list[str]:

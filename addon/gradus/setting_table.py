@@ -174,8 +174,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         label="Follow Cycles",
         doc=(
             "Settings that were never changed here follow those that the scene has for Cycles: bounces, caustics, "
-            "clamps, Filter Glossy, exposure and the pixel filter. Off: the defaults of Gradus, without clamps and "
-            "Filter Glossy"
+            "clamps, Filter Glossy, exposure, transparent glass and the pixel filter. Off: the defaults of Gradus, "
+            "without clamps and Filter Glossy"
         ),
         native=False,
     ),
@@ -336,6 +336,26 @@ ROWS: tuple[dict[str, Any], ...] = (
         minimum=0,
         maximum=3.4e38,
         soft_maximum=10.0,
+    ),
+    dict(
+        name="film_transparent_glass",
+        kind="BOOL",
+        default=False,
+        label="Transparent Glass",
+        doc=(
+            "With a transparent film, alpha is 0 also where clear glass shows the world. Other objects, and lights,"
+            " show in the glass as before"
+        ),
+    ),
+    dict(
+        name="film_transparent_roughness",
+        kind="FLOAT",
+        default=0.1,
+        label="Glass Roughness",
+        doc="Glass up to this roughness is transparent with Transparent Glass. Rougher glass shows the world",
+        minimum=0,
+        maximum=1.0,
+        soft_maximum=1.0,
     ),
     dict(
         name="roughness_threshold",

@@ -228,26 +228,78 @@ def test_a9_attributes_of_instances_that_cannot_be_read_are_named(stage: bpy.typ
     assert any(obj.name in text and "'tint'" in text and "4.5" in text for text in warnings), warnings
 
 
-@needs_geometry_in_python
-@pytest.mark.parametrize("by_nodes", [False, True])
-def test_a9_attributes_of_instances_in_collections_are_named(by_nodes: bool, stage: bpy.types.Scene) -> None:
-    unit = add_unit(attribute_material("tint", "INSTANCER"))
-    inner, nodes = add_points()
+def add_tinted_points(unit: bpy.types.Object) -> bpy.types.Object:
+    """Adds a plane with instances of `unit` that have an attribute."""
+    points, nodes = add_points()
     nodes.link(
         nodes.store(nodes.on_points(nodes.start, nodes.object(unit)), "INSTANCE", "FLOAT_COLOR", "tint"), nodes.end
     )
+    return points
+
+
+def collection_of(*objects: bpy.types.Object) -> bpy.types.Collection:
+    """Moves objects to a collection that is not in the scene."""
     collection = bpy.data.collections.new("Inner")
-    collection.objects.link(inner)
-    if by_nodes:
-        outer, nodes = add_points()
+    for obj in objects:
+        for user in obj.users_collection:
+            user.objects.unlink(obj)
+        collection.objects.link(obj)
+    return collection
+
+
+def add_instancer(collection: bpy.types.Collection, x: float = 0.0) -> bpy.types.Object:
+    instancer = recording.add(None, location=(x, 0.0, 0.0))
+    instancer.instance_type, instancer.instance_collection = "COLLECTION", collection
+    return instancer
+
+
+def add_hidden() -> bpy.types.Object:
+    bpy.ops.mesh.primitive_cube_add(size=0.1, location=(0.0, 0.0, -9.0))
+    bpy.context.object.hide_render = True
+    return bpy.context.object
+
+
+@needs_geometry_in_python
+@pytest.mark.parametrize("place", ["once", "twice", "beside others", "of nodes", "of nodes, nested"])
+def test_a9_attributes_of_instances_in_collections(place: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: they were black, and without a warning where collections are nested."""
+    inner = add_tinted_points(add_unit(attribute_material("tint", "INSTANCER")))
+    if place == "beside others":
+        collection = collection_of(add_hidden(), inner)
+        collection.children.link(collection_of(add_tinted_points(add_unit(attribute_material("tint", "INSTANCER")))))
+    else:
+        collection = collection_of(add_hidden(), inner)
+    if place in {"twice", "of nodes, nested"}:
+        collection = collection_of(add_hidden(), add_instancer(collection))
+    if place.startswith("of nodes"):
+        _, nodes = add_points()
         info = nodes.add("GeometryNodeCollectionInfo")
         info.inputs["Collection"].default_value = collection
         nodes.link(nodes.on_points(nodes.start, info.outputs[0]), nodes.end)
     else:
-        outer = recording.add(None)
-        outer.instance_type, outer.instance_collection = "COLLECTION", collection
+        for x in (-1.2, 1.2):
+            add_instancer(collection, x)
+    assert recording.export(stage)[1].warnings == []
+    expect_cycles(stage, tmp_path)
+
+
+@needs_geometry_in_python
+@pytest.mark.parametrize("children", [1, 2])
+def test_a9_attributes_of_instances_on_vertices(children: int, stage: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: what the second child instances had the attributes of the first one."""
+    shown = [add_tinted_points(add_unit(attribute_material("tint", "INSTANCER"))) for _ in range(children)]
+    bpy.ops.mesh.primitive_plane_add(size=3.0)
+    outer = bpy.context.object
+    outer.instance_type = "VERTS"
+    outer.show_instancer_for_render = False
+    for child in shown:
+        child.parent = outer
     warnings = recording.export(stage)[1].warnings
-    assert any(outer.name in text and "collection" in text for text in warnings), warnings
+    if children == 1:
+        assert warnings == []
+        expect_cycles(stage, tmp_path)
+    else:
+        assert any(outer.name in text and "one id" in text for text in warnings), warnings
 
 
 @pytest.mark.parametrize("kind", ["FLOAT_VECTOR", "FLOAT2"])

@@ -233,6 +233,10 @@ def has_effect(kind: str, before: dict[str, Any], after: dict[str, Any]) -> bool
 
 
 def prepare(scene: bpy.types.Scene, option: dict[str, Any]) -> None:
+    if option["name"].startswith("film_transparent_"):  # glass in front of the world
+        scene.render.film_transparent = True
+        bpy.data.objects["Floor"].hide_render = True
+        bpy.data.materials["Pane"].node_tree.nodes["Glass BSDF"].inputs["Roughness"].default_value = 0.05
     if option["name"] == "strict":
         add_missing_image()
     if option.get("shown") in ("animation", "motion blur"):

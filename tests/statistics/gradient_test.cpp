@@ -495,6 +495,101 @@ INSTANTIATE_TEST_SUITE_P(
                     Above{"RoughJustAboveTheThreshold", add_mirror_ball, test::glossy(0.33f), 0.3f}),
     [](const testing::TestParamInfo<Above>& info) { return std::string(info.param.name); });
 
+// A glass ball that shows the background of a transparent film, with a held-out wall behind a part of it. `roughness`
+// is that of its glass and `second` that of another glass that is mixed in; Transparent Glass ends at `limit`.
+struct ClearGlass {
+  const char* name;
+  float roughness, second, limit;
+};
+
+class TransparentGlass : public testing::TestWithParam<ClearGlass> {
+ protected:
+  void SetUp() override {
+    const ClearGlass& p = GetParam();
+    scene_.world(Rgb(0.7f, 0.5f, 0.3f));
+    scene_.quad(Vec3(-3, -0.8f, 3), Vec3(6, 0, 0), Vec3(0, 0, -6), scene_.material(test::matte(Rgb(0.6f))));
+    scene_.quad(Vec3(0.1f, -0.8f, -1.5f), Vec3(1.5f, 0, 0), Vec3(0, 3, 0), scene_.material(test::matte(Rgb(0.5f))),
+                GRADUS_VISIBLE_ALL | GRADUS_HOLDOUT);
+    scene_.ball(Vec3(0), 0.7f, glass(p.roughness, p.second), 10, true);
+    scene_.camera(Vec3(0, 0.2f, 3), Vec3(0), 0.6f);
+  }
+  integrator::IntegratorContext context(uint32_t seed) {
+    GradusSettings settings = test::test_settings(kWidth, kHeight);
+    settings.seed = seed;
+    settings.max_bounces = 6;
+    settings.film_transparent = settings.film_transparent_glass = 1;
+    settings.film_transparent_roughness = GetParam().limit;
+    return scene_.context(settings);
+  }
+  // Returns the mean alpha over the picture.
+  double mean_alpha(const integrator::IntegratorContext& c) {
+    film::Film film = test::make_test_film(c.settings, false);
+    test::sample_film(*integrator::make_path_integrator(c), 0, 64, &film);
+    const film::GradientImages images = film::read_images(film, 0);
+    double sum = 0.0;
+    for (size_t i = 3; i < images.primal.size(); i += 4) sum += images.primal[i];
+    return 4.0 * sum / double(images.primal.size());
+  }
+  uint64_t glass(float roughness, float second) {
+    test::ProgramBuilder p;
+    const auto lobe = [&](float r) { return test::In::from(p.add(GRADUS_OP_GLASS, {Vec3(0.5f), r, 1.5f})); };
+    const auto first = lobe(roughness), other = lobe(second);
+    return scene_.material(p.desc(p.add(GRADUS_OP_ADD_SHADER, {first, other})));
+  }
+  PathScene scene_;
+};
+
+TEST_P(TransparentGlass, B7_GradientsAreDifferencesOfTheImage) {
+  BothDirections differences;
+  for (uint32_t seed = 0; seed < 24; ++seed) {
+    const integrator::IntegratorContext c = context(seed);
+    film::Film film = test::make_test_film(c.settings, true);
+    test::sample_film(*gradient::make_gradient_integrator(c), 0, 24, &film);
+    differences.add(film::read_images(film, 0));
+  }
+  differences.check();
+}
+
+TEST_P(TransparentGlass, AlphaBelongsToOneComponentWithEveryIntegrator) {
+  integrator::IntegratorContext c = context(3);
+  film::Film plain = test::make_test_film(c.settings, true);
+  test::sample_film(*integrator::make_path_integrator(c), 0, 16, &plain);
+  c.components = lpe::ComponentSet::parse("");
+  film::Film film = test::make_test_film(c.settings, true, c.components.count());
+  test::sample_film(*gradient::make_gradient_integrator(c), 0, 16, &film);
+  film::Film single = test::make_test_film(c.settings, true, 1);
+  integrator::IntegratorContext whole = context(3);
+  test::sample_film(*gradient::make_gradient_integrator(whole), 0, 16, &single);
+  const int seen = c.components.alpha_component();
+  for (size_t i = 0; i < plain.components[0].primal[0].size(); ++i) {
+    ASSERT_EQ(film.components[size_t(seen)].primal[0][i].w, plain.components[0].primal[0][i].w) << i;
+    for (int k = 0; k < film::kOffsets; ++k) {
+      for (int n = 0; n < c.components.count(); ++n) {
+        const float alpha = film.components[size_t(n)].gradient[0][k][i].w;
+        const float expected = n == seen ? single.components[0].gradient[0][k][i].w : 0.0f;
+        ASSERT_NEAR(alpha, expected, n == seen ? 1e-4 : 0.0) << c.components[n].name << ' ' << i;
+      }
+    }
+  }
+}
+
+TEST_P(TransparentGlass, AlphaIsLessThanWithoutTheOption) {
+  const integrator::IntegratorContext c = context(1);
+  GradusSettings settings = c.settings;
+  settings.film_transparent_glass = 0;
+  const double with = mean_alpha(c), without = mean_alpha(scene_.context(settings));
+  std::printf("  alpha %.4f instead of %.4f\n", with, without);
+  EXPECT_LT(with, without - 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, TransparentGlass,
+                         testing::Values(ClearGlass{"Smooth", 0.0f, 0.0f, 0.1f},
+                                         ClearGlass{"Specular", 0.2f, 0.2f, 0.3f},
+                                         ClearGlass{"NonSpecular", 0.5f, 0.5f, 0.6f},
+                                         ClearGlass{"OneOfTwo", 0.15f, 0.3f, 0.2f},
+                                         ClearGlass{"OneOfTwoNonSpecular", 0.4f, 0.7f, 0.5f}),
+                         [](const testing::TestParamInfo<ClearGlass>& info) { return std::string(info.param.name); });
+
 std::vector<Scenario> all_scenarios() {
   std::vector<Scenario> all;
   for (int i = 0; i < static_cast<int>(Scenario::Count); ++i) all.push_back(static_cast<Scenario>(i));

@@ -105,3 +105,16 @@ def shader_material(kind: str, inputs: dict[str, Any]) -> bpy.types.Material:
     material = new_material(kind)
     show(material, Graph(material)(kind, "Emission" if kind == "Emission" else "BSDF", inputs))
     return material
+
+
+def new_world(color: tuple[float, float, float]) -> bpy.types.World:
+    """Returns a world of one colour in every version of Blender."""
+    world = bpy.data.worlds.new("World")
+    if bpy.app.version < (5, 0, 0):
+        world.use_nodes = True
+    tree = world.node_tree
+    tree.nodes.clear()
+    background, output = tree.nodes.new("ShaderNodeBackground"), tree.nodes.new("ShaderNodeOutputWorld")
+    background.inputs["Color"].default_value = (*color, 1.0)
+    tree.links.new(background.outputs[0], output.inputs["Surface"])
+    return world

@@ -39,7 +39,7 @@ def read_instance_attributes(
     wanted = {entry.index: entry for entry in entries if names_of(entry.material_keys)}
     if not wanted:
         return
-    reader = _Reader(depsgraph.scene_eval, warn)
+    reader = _Reader(depsgraph, warn)
     for index, instance in enumerate(depsgraph.object_instances):
         if index & 255 == 0:
             poll()
@@ -51,9 +51,9 @@ def read_instance_attributes(
 class _Reader:
     """Reads attributes of the instances of one evaluation."""
 
-    def __init__(self, scene: Any, warn: Callable[[str], None]) -> None:
-        self._particles = _Particles(scene.frame_current_final)
-        self._nodes = NodeInstances()
+    def __init__(self, depsgraph: Any, warn: Callable[[str], None]) -> None:
+        self._particles = _Particles(depsgraph.scene_eval.frame_current_final)
+        self._nodes = NodeInstances(depsgraph.mode == "RENDER")
         self._warn = warn
 
     def value(self, entry: Entry, instance: Any, name: str) -> Color:

@@ -36,21 +36,24 @@ class _Level:
         self._points = geometry.instances_pointcloud()
         self._references = geometry.instance_references()
         self._columns: dict[str, tuple[int, array] | None] = {}
-        self._nested: dict[int, _Level | None] = {}
-        self._index_of: dict[int, int] | None = None
+        self.nested: dict[int, _Source] = {}  # by the number of a reference
+        self._index_of: dict[int, int | None] | None = None
 
     @property
     def is_empty(self) -> bool:
         return self._points is None
 
     def index(self, number: int) -> int | None:
-        """Returns the index of the instance that a persistent id names: its attribute "id" if it has one."""
+        """Returns the index of the instance that a persistent id names: its attribute "id" if it has one.
+
+        It is None where several instances have that id, as those of several children on one vertex.
+        """
         if self._index_of is None:
             ids = self._points.attributes.get("id")
             numbers = read_values(ids)[1] if ids is not None else range(len(self._points.points))
             self._index_of = {}
             for index, value in enumerate(numbers):
-                self._index_of.setdefault(int(value), index)
+                self._index_of[int(value)] = index if int(value) not in self._index_of else None
         return self._index_of.get(number)
 
     def color(self, name: str, index: int) -> Color | None:
@@ -64,12 +67,10 @@ class _Level:
         value = tuple(values[channels * index : channels * index + channels])
         return (value * 3 if channels == 1 else value + (0.0,) * (3 - channels)) + (1.0,) * (channels < 4)
 
-    def nested(self, index: int) -> _Level | None:
-        """Returns the instances in what an instance refers to, or None if that is a collection."""
+    def reference(self, index: int) -> tuple[int, Any]:
+        """Returns the number of what an instance refers to, and the object, geometry or collection itself."""
         handle = int(self._references_of_instances()[index])
-        if handle not in self._nested:
-            self._nested[handle] = _level_of(self._references[handle])
-        return self._nested[handle]
+        return handle, self._references[handle]
 
     def _references_of_instances(self) -> array:
         if ".reference_index" not in self._columns:
@@ -77,35 +78,56 @@ class _Level:
         return self._columns[".reference_index"][1]
 
 
-def _level_of(reference: Any) -> _Level | None:
-    """Returns the instances in an evaluated object or geometry, or None if it is neither."""
-    if hasattr(reference, "instances_pointcloud"):
-        return _Level(reference, "")
-    if hasattr(reference, "evaluated_geometry"):
-        return _level_of_object(reference)
-    return None
+class _Collection:
+    """Objects by the number that an instance of their collection has in its persistent id."""
+
+    def __init__(self, objects: list[Any]) -> None:
+        self._objects = objects
+
+    def object(self, number: int) -> Any | None:
+        return self._objects[number] if 0 <= number < len(self._objects) else None
 
 
-def _level_of_object(obj: Any) -> _Level | None:
-    own = _OWN_COMPONENTS.get(obj.type)
-    return _Level(obj.evaluated_geometry(), own) if own is not None else None
+_Source = _Level | _Collection | None
+"""What instances come from; None: nothing that is followed."""
 
 
-def _may_instance(parent: Any) -> tuple[Any, ...]:
-    """Returns an instancer and the objects in it, whose instances are also those of the instancer."""
-    collection = parent.instance_collection
-    return (parent, *parent.children, *(collection.all_objects if collection is not None else ()))
+def _shown_objects(collection: Any, hidden: str) -> list[Any]:
+    """Returns the objects that a collection shows, in Blender's order. hidden: the switch that hides an object."""
+    shown: set[Any] = set()
+    waiting = [collection]
+    while waiting:
+        place = waiting.pop()
+        if not getattr(place, hidden):
+            shown.update(place.objects)
+            waiting += place.children
+    return [obj for obj in collection.all_objects if obj in shown and not getattr(obj, hidden)]
 
 
-def _has_nodes(obj: Any) -> bool:
-    return any(modifier.type == "NODES" for modifier in obj.modifiers)
+def _may_show_nodes(instancer: Any) -> bool:
+    """Returns whether an instancer, or an object whose instances are also those of the instancer, has nodes.
+
+    instancer: an original object, since evaluated ones do not list their children.
+    """
+    waiting, seen = [instancer], {instancer}
+    while waiting:
+        obj = waiting.pop()
+        if any(modifier.type == "NODES" for modifier in obj.modifiers):
+            return True
+        collection = obj.instance_collection
+        inner = {*obj.children, *(collection.all_objects if collection is not None else ())} - seen
+        seen |= inner
+        waiting += inner
+    return False
 
 
 class NodeInstances:
-    """Finds attributes of the instances of one evaluation."""
+    """Finds attributes of the instances of one evaluation. is_render: whether it is that of a render."""
 
-    def __init__(self) -> None:
-        self._levels: dict[int, _Level | None] = {}
+    def __init__(self, is_render: bool) -> None:
+        self._hidden = "hide_render" if is_render else "hide_viewport"
+        self._sources: dict[int, _Source] = {}
+        self._may_show_nodes: dict[int, bool] = {}
 
     def value(self, instance: Any, name: str) -> Color | None:
         """Returns an attribute from the innermost level that has it, or None."""
@@ -118,37 +140,76 @@ class NodeInstances:
 
     def unread(self, instance: Any) -> str:
         """Returns why attributes of an instance may be missing, or ""."""
-        if not any(_has_nodes(obj) for obj in _may_instance(instance.parent)):
+        parent = instance.parent
+        key = parent.as_pointer()
+        if key not in self._may_show_nodes:
+            self._may_show_nodes[key] = _may_show_nodes(parent.original)
+        if not self._may_show_nodes[key]:
             return ""
-        if not hasattr(instance.parent, "evaluated_geometry"):
+        if not hasattr(parent, "evaluated_geometry"):
             return "attributes of instances can be read from Blender 4.5 on"
         _, is_complete = self._places(instance)
-        return "" if is_complete else "attributes of instances in a collection, or of another instancer, are not read"
+        return "" if is_complete else "attributes of instances are not read where several have one id"
 
     def _places(self, instance: Any) -> tuple[list[tuple[_Level, int]], bool]:
         """Returns the levels of an instance with its index in each, from the outermost on, and whether these are all.
 
-        What collections and other instancers contain is not followed. Where a geometry shows components of its own,
-        those have the first numbers, and its instances are below the next one.
+        Where a geometry shows components of its own, those have the first numbers, and its instances are below the next
+        one. Instances on vertices, faces and particles are instances of the geometry, too.
         """
         numbers = [number for number in instance.persistent_id if number != _NO_LEVEL]
         places: list[tuple[_Level, int]] = []
-        level = self._top(instance.parent)
-        while numbers and level is not None and not level.is_empty:
-            if level.component_count and numbers.pop() < level.component_count:
-                break
-            index = level.index(numbers.pop()) if numbers else None
+        source = self._of_object(instance.parent)
+        while numbers:
+            if source is None:
+                return places, False
+            if isinstance(source, _Collection):
+                obj = source.object(numbers.pop())
+                source = self._of_object(obj) if obj is not None else None
+                continue
+            if source.is_empty:
+                return places, len(numbers) == 1
+            if source.component_count and numbers.pop() < source.component_count:
+                return places, True
+            if not numbers:
+                return places, True
+            index = source.index(numbers.pop())
             if index is None:
-                break
-            places.append((level, index))
-            level = level.nested(index)
-        is_complete = not numbers or (level is not None and (bool(places) or len(numbers) == 1))
-        return places, is_complete
+                return places, False
+            places.append((source, index))
+            source = self._nested(source, index)
+        return places, True
 
-    def _top(self, parent: Any) -> _Level | None:
-        if not hasattr(parent, "evaluated_geometry"):
+    def _nested(self, level: _Level, index: int) -> _Source:
+        """Returns the source of the instances in what an instance refers to."""
+        handle, reference = level.reference(index)
+        if handle not in level.nested:
+            level.nested[handle] = self._of_reference(reference)
+        return level.nested[handle]
+
+    def _of_reference(self, reference: Any) -> _Source:
+        if hasattr(reference, "instances_pointcloud"):
+            return _Level(reference, "")
+        if hasattr(reference, "evaluated_geometry"):
+            return self._of_object(reference)
+        if hasattr(reference, "all_objects"):
+            # Each object has two numbers: for itself and for its own instances.
+            return _Collection([obj for obj in _shown_objects(reference, self._hidden) for _ in range(2)])
+        return None
+
+    def _of_object(self, obj: Any) -> _Source:
+        if not hasattr(obj, "evaluated_geometry"):
             return None
-        key = parent.as_pointer()
-        if key not in self._levels:
-            self._levels[key] = _level_of_object(parent)
-        return self._levels[key]
+        key = obj.as_pointer()
+        if key not in self._sources:
+            self._sources[key] = _source_of_object(obj)
+        return self._sources[key]
+
+
+def _source_of_object(obj: Any) -> _Source:
+    """Returns the source of the instances of an object. Those of geometry go before its collection, as in Blender."""
+    own = _OWN_COMPONENTS.get(obj.type)
+    level = _Level(obj.evaluated_geometry(), own) if own is not None else None
+    if (level is None or level.is_empty) and obj.instance_type == "COLLECTION" and obj.instance_collection is not None:
+        return _Collection(list(obj.instance_collection.all_objects))
+    return level

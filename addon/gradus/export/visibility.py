@@ -50,10 +50,10 @@ def visibility(obj: Any, parent: Any, view_layer: Any) -> int:
         owner = parent
     if bits == 0:
         return 0
-    if owner.indirect_only_get(view_layer=view_layer):
-        bits &= ~CAMERA
-    if obj.is_holdout or owner.holdout_get(view_layer=view_layer):
+    if owner.holdout_get(view_layer=view_layer):
         bits |= HOLDOUT
+    elif owner.indirect_only_get(view_layer=view_layer):
+        bits &= ~CAMERA
     if owner.is_shadow_catcher or obj.is_shadow_catcher:
         bits |= SHADOW_CATCHER
     return bits

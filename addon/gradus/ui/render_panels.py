@@ -145,7 +145,7 @@ class GRADUS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
 
 
 class GRADUS_OT_copy_from_cycles(bpy.types.Operator):
-    """Copy bounces, caustics, Filter Glossy, exposure and the pixel filter from the Cycles settings of this scene"""
+    """Copy bounces, caustics, Filter Glossy and film settings from the Cycles settings of this scene"""
 
     bl_idname = "gradus.copy_from_cycles"
     bl_label = "Copy from Cycles"
@@ -164,6 +164,10 @@ class GRADUS_RENDER_PT_film(RenderPanel, bpy.types.Panel):
         layout = self.columns()
         shared_prop(layout, context.scene, "film_exposure")
         layout.prop(context.scene.render, "film_transparent", text="Transparent")
+        column = layout.column()
+        column.active = context.scene.render.film_transparent
+        shared_prop(column, context.scene, "film_transparent_glass")
+        shared_prop(column, context.scene, "film_transparent_roughness")
         column = layout.column(align=True)
         shared_prop(column, context.scene, "pixel_filter")
         shared_prop(column, context.scene, "filter_width")

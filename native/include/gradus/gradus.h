@@ -633,6 +633,10 @@ typedef struct GradusSettings {
                                        [pixels] */
   float film_exposure;              /* Factor on the radiance of the picture and of its light passes. */
   uint32_t film_transparent;        /* The camera does not see the world: alpha is 0 there. */
+  uint32_t film_transparent_glass;  /* With a transparent film, alpha is 0 also where clear glass shows the world.
+                                       Other objects, and lights, show in the glass as before. */
+  float film_transparent_roughness; /* Glass up to this roughness is transparent with Transparent Glass. Rougher
+                                       glass shows the world. */
   float roughness_threshold;        /* Surfaces whose roughness squared is below this count as mirrors and clear
                                        glass: the passes of surfaces look through them, and light path expressions
                                        see R or T. 0.1 is a roughness of 0.316. */

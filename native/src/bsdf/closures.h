@@ -248,6 +248,9 @@ class Closures {
   KindEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool diffuse) const;
   // Returns the sum of all smooth lobes where the caller, not the geometric normal, decides the side of wi.
   BsdfEval evaluate_side(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const;
+  // Returns whether most of what the smooth lobes of a class transmit is glass whose alpha_x·alpha_y is at most
+  // `limit`.
+  bool transmits_clearly(ScatterClass c, const Vec3& wo, const Vec3& wi, float limit) const;
   // Returns the light pass of one side of a lobe. As in Cycles, the reflection side of glass is glossy.
   LightPass light_pass(int lobe, bool transmitted) const;
   // Returns the value of evaluate_side(), split by Blender's light passes.

@@ -223,6 +223,15 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   return all.pdf > 0.0f && is_finite(all.pdf) && is_finite(all.value);
 }
 
+bool Closures::transmits_clearly(ScatterClass c, const Vec3& wo, const Vec3& wi, float limit) const {
+  float clear = 0.0f, rough = 0.0f;
+  for_smooth(c, wo, wi, true, [&](const Lobe& lobe, const BsdfEval& part) {
+    const bool is_clear = is_microfacet(lobe.type) && lobe.alpha_x * lobe.alpha_y <= limit;
+    (is_clear ? clear : rough) += mean_component(part.value);
+  });
+  return clear > rough;
+}
+
 LightPass Closures::light_pass(int lobe, bool transmitted) const {
   return static_cast<LightPass>(pass_of(this->lobe(lobe), transmitted));
 }

@@ -10,7 +10,7 @@ struct BasePath {
   explicit BasePath(const path::PathContext& context_)
       : context(context_),
         has_same_integrand(!context_.has_transparency && context_.scene.features.has_uniform_visibility &&
-                           !context_.kinds_matter) {}
+                           !context_.kinds_matter && context_.glass_limit < 0.0f) {}
 
   const path::PathContext& context;
   // Light sampling and BSDF sampling see the same integrand in the whole scene, as weighting them jointly requires
@@ -21,7 +21,7 @@ struct BasePath {
   // The last segment, and the state with which the base has entered it.
   const path::Segment* segment = nullptr;
   path::PathState state;
-  bool ends_in_hole = false;  // the camera ray has met a surface that cuts a hole into the film
+  bool ends_in_hole = false;  // the segment has met a surface that cuts a hole into the film
   // The vertex x_i at which the last segment starts, its position and the event there; not set if the segment starts at
   // the camera. The vertex itself may be overwritten while offsets are deferred.
   const path::Vertex* from = nullptr;
@@ -34,7 +34,7 @@ struct BasePath {
     segment = &segment_;
     state = state_;
     ends_in_hole =
-        source.vertex == nullptr && segment_.end == path::SegmentEnd::Surface && path::cuts_hole(context, vertex);
+        state.shows_background() && segment_.end == path::SegmentEnd::Surface && path::cuts_hole(context, vertex);
     if (source.vertex != nullptr) {
       event = *source.event;
       from = source.vertex;

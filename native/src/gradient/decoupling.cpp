@@ -34,7 +34,7 @@ bool continues(const BasePath& base) {
 bool continues(const BasePath& base, const OffsetPath& offset) {
   return offset.segment->end == path::SegmentEnd::Surface && !base.state.emission_only &&
          !path::is_at_transparent_limit(base.context, offset.state.ray.state) &&
-         !(offset.is_from_camera && path::cuts_hole(base.context, *offset.vertex));
+         !(offset.state.shows_background() && path::cuts_hole(base.context, *offset.vertex));
 }
 
 const path::PathResult& DecoupledTracer::trace(const BasePath& base, OffsetPath* offset, bool is_lit,

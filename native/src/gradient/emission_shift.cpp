@@ -25,14 +25,14 @@ Radiance evaluate_own_emission(const BasePath& base, OffsetPath* offset) {
   const float opaque = mean_component(o.state.throughput);
   const path::RaySource seen_from = o.segment->passes_portal ? path::RaySource{} : o.source();
   if (o.segment->end == path::SegmentEnd::Escaped) {
-    const bool shows_through = o.is_from_camera && context.settings.film_transparent != 0;
+    const bool shows_through = o.state.shows_background() && context.settings.film_transparent != 0;
     emission += Radiance(path::world_contribution(context, seen_from, o.state).clamped, shows_through ? -opaque : 0.0f);
   } else if (o.segment->end == path::SegmentEnd::Surface) {
     const shading::ShadeResult& shade = o.vertex->shade;
-    if (o.is_from_camera && path::cuts_hole(context, *o.vertex)) {
+    if (o.state.shows_background() && path::cuts_hole(context, *o.vertex)) {
       return emission - Radiance(0.0f, 0.0f, 0.0f, opaque);
     }
-    const float held_out = o.is_from_camera ? path::holdout_alpha(o.state.throughput, shade.holdout) : 0.0f;
+    const float held_out = o.state.shows_background() ? path::holdout_alpha(o.state.throughput, shade.holdout) : 0.0f;
     if (is_black(shade.emission)) {
       return emission - Radiance(0.0f, 0.0f, 0.0f, held_out);
     }

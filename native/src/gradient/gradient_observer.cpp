@@ -197,6 +197,19 @@ void GradientObserver::on_world(const path::RaySource& source, const path::Contr
   }
 }
 
+// Offsets with a segment of their own have an alpha of their own (own_emission()). Other shifts do not keep alpha:
+// behind clear glass of class D both ends of a pair leave it unpaired.
+void GradientObserver::on_transparency(float value) {
+  const Radiance transparency(0.0f, 0.0f, 0.0f, -value);
+  base_emission_ += transparency;
+  for (int k = 0; k < film::kOffsets; ++k) {
+    const OffsetPath& o = offsets_[k];
+    if (o.stage == OffsetStage::Absent || o.stage == OffsetStage::Coupled) continue;
+    const float ratio = o.stage == OffsetStage::Decoupled ? o.ratio : 0.0f;
+    accumulator_.add_pair(k, context_.components.alpha_component(), transparency, Radiance(0.0f), ratio);
+  }
+}
+
 void GradientObserver::on_emission(const path::RaySource& source, const path::Contribution& c,
                                    const path::Vertex& vertex) {
   if (!add_base_emission(c, Rgb(1.0f))) {
@@ -234,7 +247,7 @@ void GradientObserver::on_emission_complete() {
     if (o.has_own_segment) {
       const Radiance emission = own_emission(base_, &o);
       if (emission != Radiance(0.0f) || base_emission_ != Radiance(0.0f)) {
-        accumulator_.add_pair(k, component, base_emission_, emission, o.ratio);
+        add_own_pair(k, component, emission);
       }
     }
     if ((o.stage == OffsetStage::Coupled || o.stage == OffsetStage::Reconnected) && !o.include_kind()) {
@@ -250,6 +263,18 @@ void GradientObserver::on_emission_complete() {
       fail(ShiftFailure::Occluded, &o);  // its path ends with the emission, whether or not that of the base does
     }
   }
+}
+
+void GradientObserver::add_own_pair(int k, int component, const Radiance& emission) {
+  const float ratio = offsets_[k].ratio;
+  const int of_alpha = context_.components.alpha_component();
+  if (component == of_alpha) {
+    accumulator_.add_pair(k, component, base_emission_, emission, ratio);
+    return;
+  }
+  accumulator_.add_pair(k, component, Radiance(Rgb(base_emission_), 0.0f), Radiance(Rgb(emission), 0.0f), ratio);
+  accumulator_.add_pair(k, of_alpha, Radiance(0.0f, 0.0f, 0.0f, base_emission_.w),
+                        Radiance(0.0f, 0.0f, 0.0f, emission.w), ratio);
 }
 
 // ---- The base's vertex at the end of the segment ----
@@ -426,7 +451,7 @@ void GradientObserver::decouple(int k, ShiftFailure cause, bool offset_continues
   if (offset_continues) {
     const path::PathResult& found = decoupled_tracer_.trace(base_, &o, is_lit, &counters_);
     for (int c = 0; c < context_.components.count(); ++c) {
-      accumulator_.add_pair(k, c, Radiance(0.0f), Radiance(Rgb(found.radiance[size_t(c)]), 0.0f), o.ratio);
+      accumulator_.add_pair(k, c, Radiance(0.0f), found.radiance[size_t(c)], o.ratio);
     }
   }
   settle(OffsetStage::Decoupled, &o);

@@ -46,7 +46,7 @@ class GradientObserver {
                          const path::LightCrossing& crossing);
   void on_segment_passed(const path::Segment& segment);
   void on_world(const path::RaySource& source, const path::Contribution& c);
-  void on_transparency(float value) { base_emission_.w -= value; }
+  void on_transparency(float value);
   void on_emission(const path::RaySource& source, const path::Contribution& c, const path::Vertex& vertex);
   void on_emission_complete();
   void on_survival(float probability, const path::Vertex& vertex);
@@ -74,6 +74,8 @@ class GradientObserver {
 
   // Adds emission that the base meets. Returns whether there are offsets to compare it with.
   bool add_base_emission(const path::Contribution& c, const Rgb& segment_weight);
+  // Adds the emission on the segments of the base and of offset k, alpha included, which belongs to `component`.
+  void add_own_pair(int k, int component, const Radiance& emission);
   // Adds a contribution of the base to the pairs of offsets in final stages.
   void add_to_suffix(const path::Contribution& c, const Rgb& segment_weight);
   bool has_offset_at(OffsetStage stage) const;

@@ -34,6 +34,9 @@ ShiftedEvent replay_event(const path::Vertex& x, const path::ScatterEvent& event
   if (failure != ShiftFailure::None) {
     return failed_event(failure);
   }
+  if (!sample.dirac && path::is_clear(event.glass_limit, y, c, sample.wi, sample.transmitted) != event.is_clear) {
+    return failed_event(ShiftFailure::Class);
+  }
   const bsdf::BsdfEval of_kind = event.by_kind ? sample.kind : bsdf::BsdfEval{sample.value, sample.pdf};
   ShiftedEvent shifted = weigh_event(event, sample.wi, of_kind.value, probability * of_kind.pdf, 1.0f);
   shifted.pdf = probability * sample.pdf;

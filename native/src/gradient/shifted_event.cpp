@@ -51,6 +51,11 @@ ShiftedEvent event_towards(const path::ScatterEvent& event, const path::Vertex& 
   if (!(probability > 0.0f) || !closures.has_smooth(event.scatter_class)) {
     return failed_event(ShiftFailure::Class);
   }
+  // The two paths would differ in what they show behind the event.
+  if (event.glass_limit >= 0.0f &&
+      path::is_clear(event.glass_limit, y, event.scatter_class, wi, is_transmission(y, wi)) != event.is_clear) {
+    return failed_event(ShiftFailure::Class);
+  }
   const bsdf::KindEval eval = closures.evaluate(event.scatter_class, y.wo, wi, event.sample.diffuse);
   // A kind is a pair (diffuse or not, reflected or transmitted). The direction alone determines the second entry.
   const bool same_side = is_transmission(y, wi) == event.sample.transmitted;

@@ -61,6 +61,8 @@ class ComponentSet {
   LpeState next(LpeState state, bsdf::ScatterClass event) const { return states_[state].next[size_t(event)]; }
   // Returns the component of a path that finds light in this state.
   int component(LpeState state) const { return states_[state].component; }
+  // Returns the component that has the film's alpha: that of the empty path alone, so that components add up.
+  int alpha_component() const { return component(LpeState{0}); }
   // Returns the bits of the components that a path can still reach, by light in this state or in a later one.
   uint32_t ahead(LpeState state) const { return states_[state].ahead; }
   // Returns the bits of the components of paths that scatter at least once, and only in the classes of `events`, as

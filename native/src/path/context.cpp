@@ -48,6 +48,13 @@ float pixel_angle_of(const GradusCamera& camera, const GradusSettings& settings)
   return camera.type == GRADUS_CAMERA_ORTHOGRAPHIC ? side / (w[1] - w[0]) : side;
 }
 
+// Returns PathContext::glass_limit. A roughness is the square root of an alpha.
+float glass_limit_of(const GradusSettings& settings) {
+  if (settings.film_transparent == 0 || settings.film_transparent_glass == 0) return -1.0f;
+  const float alpha = settings.film_transparent_roughness * settings.film_transparent_roughness;
+  return alpha * alpha;
+}
+
 bool finds_transparency(const scene::Snapshot& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
                      [](const auto& material) { return material->may_be_transparent; });
@@ -68,6 +75,7 @@ PathContext::PathContext(const scene::Snapshot& snapshot, const camera::Camera& 
       max_transparent(path::max_transparent(settings_)),
       kinds_matter(finds_kinds_matter(snapshot)),
       diffuse_flags(flags_of_diffuse_rays(snapshot, settings_)),
+      glass_limit(glass_limit_of(settings_)),
       filter_glossy(snapshot.features.min_alpha < FilterGlossy::kMaxBlur ? settings_.blur_glossy : 0.0f),
       pixel_angle(pixel_angle_of(snapshot.camera, settings_)) {
   kinds_matter |= (diffuse_flags & (shading::kRayWithoutReflections | shading::kRayWithoutRefractions)) != 0;

@@ -39,6 +39,8 @@ struct PathContext {
   bool kinds_matter = false;
   // RayFlag bits of a ray behind a diffuse bounce. They leave caustics out where those are switched off.
   uint32_t diffuse_flags = 0;
+  // Product of the two alphas up to which glass shows the film's background; negative if no glass does.
+  float glass_limit = -1.0f;
   FilterGlossy filter_glossy;
   // Angle of a pixel's shorter side, or its share of the width of an orthographic picture.
   float pixel_angle = 0.0f;

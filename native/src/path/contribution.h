@@ -40,7 +40,7 @@ Contribution light_contribution(const PathContext& context, const PathState& sta
                                 const LightVisibility& visibility);
 
 // Returns whether the surface is a holdout object or a shadow catcher, which the film shows as transparent and at which
-// a camera path ends.
+// a path ends that shows the film's background.
 bool cuts_hole(const PathContext& context, const Vertex& vertex);
 // Returns the part of the film that a surface with the given holdout closure leaves transparent.
 float holdout_alpha(const Rgb& throughput, const Rgb& holdout);

@@ -84,6 +84,11 @@ LitClass light_class(const PathContext& context, const Vertex& vertex, bsdf::Sca
     const std::array<Rgb, 3> passes = light_by_pass(context, vertex, c, light, ray);
     lit.value = passes[0] + passes[1] + passes[2];
   }
+  // Rays do not find the world behind clear glass either.
+  if (light.point.kind == light::LightKind::World && shows_background(ray) &&
+      is_clear(context.glass_limit, vertex, c, view.direction, transmitted)) {
+    lit.value = Rgb(0.0f);
+  }
   return lit;
 }
 
@@ -138,7 +143,8 @@ Rgb light_hit_radiance(const light::LightEvaluation& view, const PathRay& ray, i
 }
 
 Rgb world_radiance(const PathContext& context, const PathRay& ray, int depth) {
-  const bool hidden = depth == 0 && (context.settings.film_transparent != 0 || context.settings.use_sky == 0);
+  const bool hidden = (context.settings.film_transparent != 0 && shows_background(ray.state)) ||
+                      (depth == 0 && context.settings.use_sky == 0);
   if (hidden || (context.scene.world.visibility & ray.visibility) == 0) {
     return Rgb(0.0f);
   }

@@ -99,6 +99,11 @@ bool scatter(const PathContext& context, const VertexSample& u, const Vertex& ve
   }
   event->dirac_rank = sample.dirac ? bsdf::dirac_rank(closures, event->scatter_class, sample.lobe) : 0;
   event->factor = value / (event->by_kind ? event->pdf * event->kind_share() : event->pdf);
+  event->glass_limit = state->shows_background() ? context.glass_limit : -1.0f;
+  event->is_clear = sample.dirac
+                        ? event->glass_limit >= 0.0f && sample.transmitted
+                        : is_clear(event->glass_limit, vertex, event->scatter_class, sample.wi, sample.transmitted);
+  state->ray.state.glass_depth += event->is_clear ? 1 : 0;
   state->throughput *= event->factor;
   ++state->depth;
   state->lpe_state = context.components.next(state->lpe_state, event->scatter_class);

@@ -5,6 +5,9 @@
 
 namespace gradus::path {
 
+// Returns whether a ray shows the film's background: it comes from the camera, or through clear glass alone.
+inline bool shows_background(const shading::RayState& ray) { return ray.glass_depth == ray.depth; }
+
 // State that a path carries from vertex to vertex.
 struct PathState {
   PathRay ray;
@@ -12,11 +15,14 @@ struct PathState {
   int depth = 0;                // number of scattering events so far
   bool emission_only = false;   // the bounce limits are reached: the path ends with the emission of the next vertex
   lpe::LpeState lpe_state = 0;  // light path expression state after these events
+  // Returns whether the path shows the film's background, as the camera ray does: alpha is 0 where it leaves the scene
+  // above a transparent film, and where it meets a hole. With Transparent Glass, clear glass does not change that.
+  bool shows_background() const { return path::shows_background(ray.state); }
 };
 
 // Returns whether the path's next segment is its last and can show only analytic lights and the world.
 inline bool shows_only_lights(const PathContext& context, const PathState& state) {
-  return state.emission_only && context.scene.features.only_lights_emit;
+  return state.emission_only && context.scene.features.only_lights_emit && !state.shows_background();
 }
 
 // A sampled scattering event, with everything that a shift needs to know.
@@ -28,10 +34,20 @@ struct ScatterEvent {
   bool by_kind = false;    // the kind of the bounce is sampled, too, and `factor` is that of its lobes alone
   int dirac_rank = 0;      // index of the sampled Dirac lobe among those of its class
   Rgb factor = Rgb(0.0f);  // value / pdf, by which the throughput was multiplied
-  float blur = 0.0f;       // by which Filter Glossy blurs what the next ray meets, for this event alone
+  // PathContext::glass_limit if the path shows the film's background up to here, otherwise negative.
+  float glass_limit = -1.0f;
+  bool is_clear = false;  // the film's background shows through the event, too
+  float blur = 0.0f;      // by which Filter Glossy blurs what the next ray meets, for this event alone
   // Returns P(kind | direction) within the class.
   float kind_share() const { return sample.kind.pdf / sample.pdf; }
 };
+
+// Returns whether the film's background shows through a smooth event of class c: as in Cycles, where glass transmits
+// whose roughness is within PathContext::glass_limit. Where lobes of one class differ, what most of the light passes
+// decides, so that it is a function of the path and not of the lobe that was sampled.
+inline bool is_clear(float glass_limit, const Vertex& vertex, bsdf::ScatterClass c, const Vec3& wi, bool transmitted) {
+  return glass_limit >= 0.0f && transmitted && vertex.shade.closures.transmits_clearly(c, vertex.wo, wi, glass_limit);
+}
 
 // Returns the GradusVisibility bit of a bounce.
 uint32_t bounce_visibility(bsdf::LightPass pass, bool transmitted);

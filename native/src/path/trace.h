@@ -230,7 +230,7 @@ class PathTracer {
 
   void add_world(const RaySource& source) {
     if (recorder_ != nullptr) recorder_->escaped(state_);
-    if (state_.depth == 0 && context_.settings.film_transparent != 0)
+    if (state_.shows_background() && context_.settings.film_transparent != 0)
       add_transparency(mean_component(state_.throughput));
     const Contribution c = world_contribution(context_, source, state_);
     if (recorder_ != nullptr) recorder_->record_light(state_.throughput, c.component, c.light, kInfinity);
@@ -244,7 +244,7 @@ class PathTracer {
   // Returns whether the path can scatter at the surface. It cannot where the surface cuts a hole into the film. What a
   // shadow catcher shows is recorded apart from the picture (catcher_recorder.h).
   bool add_surface(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
-    if (state_.depth == 0) {
+    if (state_.shows_background()) {
       if (cuts_hole(context_, vertex)) {
         add_transparency(mean_component(state_.throughput));
         if (recorder_ != nullptr) recorder_->hole(sampler, state_, vertex, *segment_);
@@ -321,8 +321,12 @@ class PathTracer {
 
   // ---- Components and the result ----
 
-  // Returns whether the path can still reach a wanted component.
-  bool can_reach_wanted() const { return (context_.components.ahead(state_.lpe_state) & wanted_) != 0; }
+  // Returns whether the path can still reach a wanted component, or decrease a wanted alpha behind clear glass.
+  bool can_reach_wanted() const {
+    const bool may_be_clear = context_.glass_limit >= 0.0f && state_.shows_background();
+    const uint32_t of_alpha = may_be_clear ? 1u << context_.components.alpha_component() : 0u;
+    return ((context_.components.ahead(state_.lpe_state) | of_alpha) & wanted_) != 0;
+  }
 
   // Returns whether light that is found by one more scattering belongs to a wanted component.
   bool is_light_wanted(const PathState& arrival) const {
@@ -340,8 +344,8 @@ class PathTracer {
     result_.fallback = false;
   }
 
-  // Returns the alpha of the film. Only the component of the empty path has it, so that components add up.
-  float& alpha() { return result_.radiance[size_t(context_.components.component(lpe::LpeState{0}))].w; }
+  // Returns the alpha of the film.
+  float& alpha() { return result_.radiance[size_t(context_.components.alpha_component())].w; }
 
   void add_transparency(float value) {
     if (value != 0.0f) {

@@ -268,6 +268,8 @@ constexpr FieldLayout kSettingsFields[] = {
     FIELD(GradusSettings, filter_width),
     FIELD(GradusSettings, film_exposure),
     FIELD(GradusSettings, film_transparent),
+    FIELD(GradusSettings, film_transparent_glass),
+    FIELD(GradusSettings, film_transparent_roughness),
     FIELD(GradusSettings, roughness_threshold),
     FIELD(GradusSettings, strict),
     FIELD(GradusSettings, threads),

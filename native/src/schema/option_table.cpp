@@ -112,6 +112,11 @@ constexpr Option kOptions[] = {
            "Factor on the radiance of the picture and of its light passes."),
     OPTION(film_transparent, GRADUS_OPTION_BOOL, 0, 0, 1, {}, true,
            "The camera does not see the world: alpha is 0 there."),
+    OPTION(film_transparent_glass, GRADUS_OPTION_BOOL, 0, 0, 1, {}, true,
+           "With a transparent film, alpha is 0 also where clear glass shows the world. Other objects, and lights, "
+           "show in the glass as before."),
+    OPTION(film_transparent_roughness, GRADUS_OPTION_FLOAT, 0.1, 0, 1, {}, true,
+           "Glass up to this roughness is transparent with Transparent Glass. Rougher glass shows the world."),
     OPTION(roughness_threshold, GRADUS_OPTION_FLOAT, 0.1, 0, 1, {}, true,
            "Surfaces whose roughness squared is below this count as mirrors and clear glass: the passes of surfaces "
            "look through them, and light path expressions see R or T. 0.1 is a roughness of 0.316."),

@@ -53,6 +53,10 @@ def rows() -> Iterator[Row]:
     yield from family.rows(rna.of_part("render", rna.changes(scene.render, others)))
     yield from moving.rows(rna.of_part("render", rna.changes(scene.render, others)))
     yield from moving.rows(rna.of_part("cycles", motion_changes(scene.cycles)))
+    clear = Family("Scene settings", "Scene with transparent glass", stage_of_clear_glass, NOISY)
+    scene.cycles.film_transparent_glass = True
+    others = [name for name in rna.names(scene.cycles) if name != "film_transparent_glass"]
+    yield from clear.rows(rna.of_part("cycles", rna.changes(scene.cycles, others)))
 
 
 def motion_changes(cycles: Any) -> Iterator[tuple[str, rna.Change]]:
@@ -80,6 +84,14 @@ def stage_moving() -> Any:
             obj.keyframe_insert("location", frame=frame)
     scene.render.use_motion_blur = True
     scene.frame_set(1)
+    return scene
+
+
+def stage_of_clear_glass() -> Any:
+    """Glass in front of the world. The settings act only above a transparent film."""
+    scene = stage()
+    bpy.data.objects["Floor"].hide_render = True
+    scene.render.film_transparent = scene.cycles.film_transparent_glass = True
     return scene
 
 

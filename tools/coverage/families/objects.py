@@ -51,6 +51,8 @@ def rows() -> Iterator[Row]:
     collection = bpy.context.view_layer.layer_collection
     yield from layer.rows(rna.changes(collection, ("select*",)))
     yield from layer.rows(rna.of_part("collection", rna.changes(collection.collection, ("color_tag", "lineart*"))))
+    held_out = Family("Objects", "Held out layer collection", stage_of_held_out_collection, NOISY)
+    yield from held_out.rows(rna.changes(collection, ("[!i]*",)))
     yield from rows_of_instances()
     yield from rows_of_types()
     yield from rows_of_links()
@@ -89,6 +91,12 @@ def stage_of_collection() -> Any:
     collection.objects.link(ball)
     bpy.context.scene.collection.objects.unlink(ball)
     return bpy.context.view_layer.layer_collection.children["Group"]
+
+
+def stage_of_held_out_collection() -> Any:
+    collection = stage_of_collection()
+    collection.holdout = True
+    return collection
 
 
 def rows_of_instances() -> Iterator[Row]:
