@@ -66,7 +66,7 @@ def add_instances() -> list[bpy.types.Object]:
 @pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
 @pytest.mark.parametrize("way", ["distance", "camera", "both", "one or the other"])
 @pytest.mark.parametrize("add", [add_cubes, add_instances])
-def test_a12_instances_are_culled(add: object, way: str, kind: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
+def test_a9_instances_are_culled(add: object, way: str, kind: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
     stage.camera.data.type = kind
     cubes = add()
     cycles = stage.cycles
@@ -83,7 +83,7 @@ def test_a12_instances_are_culled(add: object, way: str, kind: str, stage: bpy.t
 
 
 @pytest.mark.parametrize("way", ["distance 0", "panorama", "without switches"])
-def test_a12_instances_are_not_culled(way: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
+def test_a9_instances_are_not_culled(way: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
     cycles = stage.cycles
     cycles.use_distance_cull, cycles.use_camera_cull = True, way != "distance 0"
     cycles.distance_cull_margin = 0.0 if way == "distance 0" else 2.4
