@@ -1,4 +1,4 @@
-"""Inputs of node groups, muted nodes and reroutes without a link act as in Cycles of the same Blender."""
+"""Groups, muted nodes, reroutes and loops of links: inputs without a link act as in Cycles of the same Blender."""
 
 from __future__ import annotations
 
@@ -179,3 +179,39 @@ def test_a9_inputs_without_a_link(name: str, stage: bpy.types.Scene, tmp_path: P
     expected, found = pictures(stage, tmp_path)
     assert expected.max() > 0.01
     assert np.abs(expected - found).mean() < 0.01 * expected.mean()
+
+
+def loop_of_numbers(graph: Graph) -> Socket:
+    """Returns a value that is added to itself. Inputs whose links close a loop have their own values in Cycles."""
+    first = graph("Math", "Value", {"Value": 0.25}, operation="ADD")
+    second = graph("Math", "Value", {"Value": first, "Value_001": 0.125}, operation="ADD")
+    graph.tree.links.new(second, first.node.inputs[0])
+    return second
+
+
+def loop_apart(graph: Graph) -> Socket:
+    loop_of_numbers(graph)
+    return graph("CombineXYZ", "Vector", {"X": 0.5})
+
+
+def loop_in_a_group(graph: Graph) -> Socket:
+    return group(graph, "Vector", lambda inner, value: loop_of_numbers(inner)).outputs[0]
+
+
+def loop_of_shaders(graph: Graph) -> Socket:
+    mixed = graph("MixShader", "Shader")
+    graph.tree.links.new(graph("Emission", "Emission", {"Color": (0.5, 0.2, 0.1, 1.0)}), mixed.node.inputs[1])
+    graph.tree.links.new(mixed, mixed.node.inputs[2])
+    return mixed
+
+
+@pytest.mark.parametrize("make", [loop_of_numbers, loop_apart, loop_in_a_group, loop_of_shaders])
+def test_a9_loops_of_links(make: Callable[[Graph], Socket], stage: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: from Blender 5.0 on, Cycles shows a material with a loop black."""
+    material = new_material()
+    show(material, make(Graph(material)))
+    mesh = bpy.context.object.data
+    mesh.materials.clear()
+    mesh.materials.append(material)
+    expected, found = pictures(stage, tmp_path)
+    np.testing.assert_allclose(found, expected, atol=0.005)
