@@ -152,6 +152,7 @@ def _ignored(scene: Any) -> list[str]:
     switches = {
         "Fast GI Approximation": cycles.use_fast_gi,
         "Use Pixel Jitter": getattr(cycles, "use_pixel_jitter", False),  # of developers, since 5.2
+        "Texture Limit": scene.render.use_simplify and cycles.texture_limit_render != "OFF",
         "Rolling Shutter": scene.render.use_motion_blur and cycles.rolling_shutter_type != "NONE",
     }
     return [name for name, is_on in switches.items() if is_on]

@@ -319,22 +319,49 @@ def test_a9_uv_maps_that_nodes_store(domain: str, kind: str, stage: bpy.types.Sc
     expect_cycles(stage, tmp_path)
 
 
-@pytest.mark.parametrize("kind", ["FLOAT", "INT", "BOOLEAN", "FLOAT_VECTOR", "FLOAT_COLOR", "FLOAT2"])
-@pytest.mark.parametrize("domain", ["POINT", "EDGE", "FACE", "CORNER"])
-def test_a9_attributes_of_all_domains(domain: str, kind: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
-    """Regression: attributes of edges were black."""
-    bpy.ops.mesh.primitive_grid_add(x_subdivisions=2, y_subdivisions=2, size=3.0)
-    obj = bpy.context.object
-    attribute = obj.data.attributes.new("made", kind, domain)
+def data_types() -> list[str]:
+    """Returns all data types that attributes of meshes have in this Blender."""
+    return [item.identifier for item in bpy.types.Attribute.bl_rna.properties["data_type"].enum_items]
+
+
+def set_values(attribute: bpy.types.Attribute) -> None:
+    """Gives each item of an attribute another value."""
     for index, item in enumerate(attribute.data):
         value = 0.3 + 0.7 * index % 1.3
-        if kind in {"FLOAT", "INT", "BOOLEAN"}:
-            item.value = {"FLOAT": value, "INT": index % 4, "BOOLEAN": index % 3 == 0}[kind]
-        elif kind == "FLOAT_COLOR":
-            item.color = (value, 0.5, 1.0 - 0.5 * value, 0.7)
+        values = (value, 0.5, 1.0 - 0.5 * value, 0.7)
+        if hasattr(item, "color"):
+            item.color = values
+        elif hasattr(item, "vector"):
+            item.vector = values[: len(item.vector)]
+        elif isinstance(item.value, (bool, int, float, str, bytes)):
+            item.value = type(item.value)(b"text" if isinstance(item.value, bytes) else index % 3 or value)
+        elif attribute.data_type == "FLOAT4X4":
+            item.value = [values] * 4
         else:
-            item.vector = (value, 0.5, 1.0 - 0.5 * value)[: 2 if kind == "FLOAT2" else 3]
-    obj.data.materials.append(attribute_material("made", "GEOMETRY"))
+            item.value = [type(part)(index % 3 or number) for part, number in zip(item.value, values, strict=False)]
+
+
+@pytest.mark.parametrize("kind", data_types())
+@pytest.mark.parametrize("domain", ["POINT", "EDGE", "FACE", "CORNER"])
+def test_a9_attributes_of_all_domains(domain: str, kind: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: attributes of edges were black, and so were quaternions. Factors are not always means.
+
+    Each of four grids shows one output, and a fifth one keeps the picture from being black.
+    """
+    if (domain, kind) == ("EDGE", "QUATERNION"):
+        pytest.skip("Blender turns rotations of edges into rotations of vertices, and Gradus takes means of numbers")
+    for place, output in enumerate(["Color", "Vector", "Fac", "Alpha", "Generated"]):
+        bpy.ops.mesh.primitive_grid_add(
+            x_subdivisions=2, y_subdivisions=2, size=1.2, location=(1.25 * place - 2.5, 0, 0)
+        )
+        mesh = bpy.context.object.data
+        if output == "Generated":
+            material = new_material()
+            show(material, Graph(material)("TexCoord", output))
+        else:
+            set_values(mesh.attributes.new("made", kind, domain))
+            material = attribute_material("made", "GEOMETRY", output)
+        mesh.materials.append(material)
     expect_cycles(stage, tmp_path)
 
 

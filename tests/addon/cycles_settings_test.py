@@ -80,6 +80,14 @@ def test_use_pixel_jitter_is_named(cycles: bpy.types.Scene) -> None:
     assert text.endswith("does not have: Use Pixel Jitter")
 
 
+def test_a_limit_of_textures_is_named(cycles: bpy.types.Scene) -> None:
+    cycles.cycles.texture_limit_render = "128"
+    assert cycles_settings.warnings(cycles, set(), is_followed=True) == []
+    cycles.render.use_simplify = True
+    [text] = cycles_settings.warnings(cycles, set(), is_followed=True)
+    assert text.endswith("does not have: Texture Limit")
+
+
 def test_clamps_without_a_light_tree_are_named(cycles: bpy.types.Scene) -> None:
     """With one light there is nothing to choose. Lights that are hidden were counted."""
     lights = [bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT")) for _ in range(2)]

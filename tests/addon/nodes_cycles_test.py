@@ -310,6 +310,44 @@ def test_a9_surfaces_without_a_material(stage: bpy.types.Scene, tmp_path: Path) 
     assert np.quantile(difference, 0.95) / expected.mean() < 0.05
 
 
+SLOTS = {
+    "empty slot": (("OBJECT", False), ("DATA", True)),
+    "two empty slots": (("OBJECT", False), ("OBJECT", False)),
+    "material of the object": (("OBJECT", True), ("DATA", True)),
+    "material of the data": (("DATA", True), ("OBJECT", False)),
+}
+
+
+@pytest.mark.parametrize("is_instance", [False, True])
+@pytest.mark.parametrize("name", SLOTS)
+def test_a9_slots_of_objects(name: str, is_instance: bool, scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: from Blender 5.2 on, an empty slot of an object does not show the material of its mesh."""
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=2, y_subdivisions=1, size=2.0)
+    obj = bpy.context.object
+    obj.data.polygons[1].material_index = 1
+    for index, (link, has_material) in enumerate(SLOTS[name]):
+        for place in ("data", "object"):
+            material = new_material()
+            color = (0.2 + 0.6 * index, 0.3, 0.9 if place == "object" else 0.1)
+            show(material, Graph(material)("CombineXYZ", "Vector", dict(zip("XYZ", color, strict=True))))
+            if place == "data":
+                obj.data.materials.append(material)
+            elif link == "OBJECT":
+                obj.material_slots[index].link = "OBJECT"
+                obj.material_slots[index].material = material if has_material else None
+    if is_instance:
+        source = bpy.data.collections.new("Source")
+        source.objects.link(obj)
+        scene.collection.objects.unlink(obj)
+        empty = bpy.data.objects.new("Instancer", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", source
+        scene.collection.objects.link(empty)
+    scene.world = bpy.data.worlds.new("World")
+    recording.add_camera(type="ORTHO", ortho_scale=2.0).location = (0.0, 0.0, 3.0)
+    expected, found = pictures(scene, tmp_path)
+    np.testing.assert_allclose(found, expected, atol=0.02)
+
+
 @pytest.fixture
 def bare(stage: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
     """Returns the stage with its objects hidden. The active object, which a test adds, is removed afterwards."""
@@ -452,6 +490,64 @@ def test_a9_alpha_of_files(kind: str, is_packed: bool, scene: bpy.types.Scene, t
     expected, found = pictures(scene, tmp_path)
     inside = np.s_[2:7, 1:15]  # without the blocks at edges
     np.testing.assert_allclose(found[inside], expected[inside], rtol=0.02, atol=0.01)
+
+
+def save_stripes(scene: bpy.types.Scene, kind: str, mode: str, folder: Path) -> str:
+    """Saves an image with stripes of alpha 0.5 and 1 in a format and returns its path."""
+    image = bpy.data.images.new("stripes", 8, 8, alpha=True, float_buffer=True)
+    image.pixels.foreach_set(([0.4, 0.3, 0.15, 0.5] + [0.4, 0.3, 0.15, 1.0]) * 32)
+    settings = scene.render.image_settings
+    settings.file_format, settings.color_mode = kind.split()[0], mode
+    for name, value in FILES[kind].items():
+        setattr(settings, name, value)
+    path = str(folder / f"stripes.{kind.split()[0].lower()}")
+    image.save_render(path, scene=scene)
+    bpy.data.images.remove(image)
+    return path
+
+
+CLIPPED = [
+    *((kind, mode) for kind in ("PNG", "PNG 16 bit", "TIFF", "OPEN_EXR") for mode in ("RGBA", "BW")),
+    ("generated", "RGBA"),
+    ("packed", "BW"),
+    ("missing", "RGBA"),
+]
+
+
+@pytest.mark.parametrize(("kind", "mode"), CLIPPED)
+def test_a9_alpha_outside_of_clipped_images(kind: str, mode: str, scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Every alpha mode, and every interpolation, for a column of planes that show alpha.
+
+    Regression: images without alpha were opaque outside, and files of one channel were not.
+    """
+    if kind == "missing" and VERSION < (5, 1, 0):
+        pytest.skip("Cycles then clips the pink of missing files, too, which Gradus names and does not clip")
+    if kind == "generated":
+        image = bpy.data.images.new("generated", 8, 8, alpha=True)
+    else:
+        path = save_stripes(scene, "PNG" if kind in {"packed", "missing"} else kind, mode, tmp_path)
+        image = bpy.data.images.load(path)
+    if kind == "packed":
+        image.pack()
+    if kind == "missing":
+        Path(path).unlink()
+        image.reload()
+    for column, alpha in enumerate(["STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"]):
+        shown = image.copy()
+        shown.alpha_mode = alpha
+        for row, interpolation in enumerate(["Linear", "Closest", "Cubic"]):
+            material = new_material()
+            graph = Graph(material)
+            properties = {"image": shown, "extension": "CLIP", "interpolation": interpolation}
+            show(material, graph("TexImage", "Alpha", {"Vector": beyond_borders(graph)}, **properties))
+            bpy.ops.mesh.primitive_plane_add(size=1.0, location=(column - 1.5, 0.75 * (row - 1), 0.0))
+            bpy.context.object.scale.y = 0.75
+            bpy.context.object.data.materials.append(material)
+    recording.add_camera(type="ORTHO", ortho_scale=4.0)
+    expected, found = pictures(scene, tmp_path)
+    assert expected.max() > 0.1
+    assert np.abs(found - expected).mean() < 0.01
+    assert np.quantile(np.abs(found - expected), 0.95) < 0.1
 
 
 @pytest.mark.parametrize("kind", ["AREA", "POINT", "SPOT"])

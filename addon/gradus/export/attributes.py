@@ -21,6 +21,8 @@ _TYPES = {
     "FLOAT_VECTOR": ("vector", "f", 3),
     "FLOAT_COLOR": ("color", "f", 4),
     "BYTE_COLOR": ("color", "f", 4),  # read as scene-linear
+    "FLOAT4": ("vector", "f", 4),
+    "QUATERNION": ("value", "f", 4),
 }
 
 

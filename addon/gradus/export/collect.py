@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from .. import compat
 from . import shadow_terminator, unsupported
 from .arrays import read
 from .light_linking import LightLinking, Links
@@ -22,6 +23,9 @@ from .shutter import NO_BLUR, Blur, blur_of
 from .visibility import ALL_RAYS, MAY_MOVE, visibility
 
 InstanceKey = tuple[int, ...]
+
+# From this version on, Cycles does not replace empty slots of objects by those of their data.
+_EMPTY_SLOTS_SINCE = (5, 2, 0)
 
 
 @dataclass(slots=True)
@@ -63,7 +67,8 @@ class Collected:
 def slot_materials(obj: Any, data: Any, override: Any) -> tuple[Any, ...]:
     """Returns materials by slot. Slots linked to the object override those of the data.
 
-    Geometry nodes set materials on the evaluated mesh only, so slots without an object link are read from there.
+    Geometry nodes set materials on the evaluated mesh only, so slots without an object link are read from there. An
+    empty slot that is linked to the object has the material of the data before Blender 5.2.
     """
     slots = obj.material_slots
     stored = getattr(data, "materials", ())
@@ -74,10 +79,19 @@ def slot_materials(obj: Any, data: Any, override: Any) -> tuple[Any, ...]:
     for index in range(count):
         is_of_object = index < len(slots) and (slots[index].link == "OBJECT" or index >= len(stored))
         if is_of_object:
-            materials.append(slots[index].material)
+            materials.append(None if _is_empty(obj, index) else slots[index].material)
         else:
             materials.append(stored[index])
     return tuple(materials)
+
+
+def _is_empty(obj: Any, index: int) -> bool:
+    """Returns whether a slot that is linked to the object has no material in Cycles.
+
+    Blender evaluates such a slot to the material of the data in all versions.
+    """
+    slots = obj.original.material_slots
+    return compat.VERSION >= _EMPTY_SLOTS_SINCE and index < len(slots) and slots[index].material is None
 
 
 @dataclass(slots=True)

@@ -16,7 +16,7 @@ import bpy
 from .. import compat, native
 from ..abi import ChannelKind
 from ..layer_channels import Channel, channels_of
-from . import blender_pixels, camera, channels, instances, light, mesh, motion, unsupported, world
+from . import blender_pixels, camera, channels, culling, instances, light, mesh, motion, unsupported, world
 from .collect import Collected, Entry, InstanceKey, collect
 from .dicing import dicing_camera, dicing_of
 from .digest import Digest
@@ -162,6 +162,8 @@ class _Sync:
         collected = collect(self._depsgraph, self._poll, None if self._wanted.any() else MayMove(), self._space)
         for text in (*unsupported.of_scene(self._scene, self._depsgraph.view_layer_eval), *collected.unsupported):
             self.warnings.add(text)
+        if (culled := culling.culling_of(self._scene, now.get(""))) is not None:
+            culling.cull(collected, culled)
         for entry in collected.surfaces:
             entry.material_keys = self._materials.surface_keys(entry.materials)
         if self._materials.instance_attribute_names:

@@ -1,4 +1,8 @@
-"""Trees with zones, closures, bundles, switches, muted nodes or other nodes that Blender evaluates for renderers."""
+"""Trees with nodes that Blender evaluates for renderers: zones, closures, bundles, switches, muted nodes and others.
+
+Trees with loops of links are among them, and groups that pass on the value of a socket which shows none: Blender then
+decides whether what reads it has coordinates or a normal of its own, or the value.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +21,35 @@ def _has_such_nodes(tree: Any, seen: set[int]) -> bool:
     if tree is None or tree.as_pointer() in seen:
         return False
     seen.add(tree.as_pointer())
+    return any(node.mute or _is_such(node, seen) for node in tree.nodes) or _has_loop(tree)
+
+
+def _is_such(node: Any, seen: set[int]) -> bool:
+    if node.type == "GROUP":
+        return _has_hidden_values(node) or _has_such_nodes(node.node_tree, seen)
+    if node.type == "GROUP_OUTPUT":
+        return _has_hidden_values(node)
+    return node.bl_idname not in _WALKED and not node.bl_idname.startswith("ShaderNode")
+
+
+def _has_hidden_values(node: Any) -> bool:
     return any(
-        node.mute or _has_such_nodes(node.node_tree, seen)
-        if node.type == "GROUP"
-        else node.mute or node.bl_idname not in _WALKED and not node.bl_idname.startswith("ShaderNode")
-        for node in tree.nodes
+        socket.hide_value and not socket.is_linked and hasattr(socket, "default_value") for socket in node.inputs
     )
+
+
+def _has_loop(tree: Any) -> bool:
+    """Returns whether links lead from a node back to it. Blender makes an empty tree of one with a loop."""
+    targets: dict[Any, list[Any]] = {}
+    waiting: dict[Any, int] = {}  # number of links from nodes that are not yet passed
+    for link in tree.links:
+        source, target = link.from_node.as_pointer(), link.to_node.as_pointer()
+        targets.setdefault(source, []).append(target)
+        waiting[target] = waiting.get(target, 0) + 1
+    ready = [node for node in targets if node not in waiting]
+    while ready:
+        for target in targets.get(ready.pop(), ()):
+            waiting[target] -= 1
+            if waiting[target] == 0:
+                ready.append(target)
+    return any(waiting.values())

@@ -237,6 +237,12 @@ def scene_time(view: NodeView) -> Value:
     return constant_float(frame if view.output == "Frame" else seconds)
 
 
+@translator("FunctionNodeInputVector")
+def vector(view: NodeView) -> Value:
+    """Returns a constant, which Blender makes of values of groups since 5.2."""
+    return constant_vector(view.node.vector)
+
+
 @translator("ShaderNodeValue")
 def value(view: NodeView) -> Value:
     return constant_float(view.node.outputs[0].default_value)

@@ -23,6 +23,8 @@ class Value:
     constant: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     node: int = -1
     output: int = 0
+    is_default: bool = field(default=False, compare=False)
+    """Whether it is the value of an input without a link, also where groups and muted nodes pass it on."""
 
     @property
     def is_constant(self) -> bool:

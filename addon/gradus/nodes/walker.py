@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from . import convert, fallback
@@ -35,16 +36,26 @@ class Walker:
 
     def input(self, socket: Any, path: Path) -> Value:
         """Returns the value of an input: the linked value, converted to the kind of the socket, or its default."""
-        linked = self.linked(socket, path)
+        linked = self._passed_on(socket, path)
         kind = convert.kind_of(socket)
         if linked is not None:
             converted = convert.convert(self.program, linked, kind)
             if converted is not None:
                 return converted
-        return convert.default_value(socket)
+        return replace(convert.default_value(socket), is_default=True)
 
     def linked(self, socket: Any, path: Path) -> Value | None:
-        """Returns the value that is linked to an input, or None."""
+        """Returns the value that is linked to an input, or None.
+
+        Before Blender 5.0, Cycles removes links to values that no node computes: to inputs of groups without a link,
+        for example. Where an input stands for coordinates or a normal without a link, it then does so, too. From 5.0
+        on, Blender inlines such groups (inlining.py).
+        """
+        value = self._passed_on(socket, path)
+        return None if value is not None and value.is_default and self.version < (5, 0, 0) else value
+
+    def _passed_on(self, socket: Any, path: Path) -> Value | None:
+        """Returns the value that a link passes on to an input, or None if it has no link."""
         source = self.tree(path).source(socket)
         return self.output(source[0], source[1], path) if source else None
 
@@ -68,7 +79,7 @@ class Walker:
             return self._pass_through(node, socket, path)
         name = node.bl_idname
         if name == "NodeReroute":
-            return self.linked(node.inputs[0], path)
+            return self._passed_on(node.inputs[0], path)
         if name == "NodeGroupInput":
             return self._group_input(socket, path)
         if name == "ShaderNodeGroup" or node.type == "GROUP":
@@ -85,10 +96,10 @@ class Walker:
         kind = convert.kind_of(socket)
         for link in node.internal_links:
             if link.to_socket.identifier == socket.identifier:
-                value = self.linked(link.from_socket, path)
+                value = self._passed_on(link.from_socket, path)
                 if value is not None:
                     return convert.convert(self.program, value, kind)
-                return None if kind == SHADER else Value(kind)
+                return None if kind == SHADER else Value(kind, is_default=True)
         return None
 
     def linked_or_default(self, socket: Any, output: Any, path: Path) -> Value | None:

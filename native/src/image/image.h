@@ -17,6 +17,7 @@ struct ImageTile {
   uint32_t channels = 0;  // as in DecodedImage
   PixelFormat format = PixelFormat::Byte;
   bool srgb = false;                  // sRGB values, converted after interpolation, as Cycles does
+  bool is_opaque_outside = false;     // look-ups outside a clipped image return alpha 1
   std::shared_ptr<uint8_t[]> pixels;  // bottom row first; colours are multiplied by alpha if the image associates it
   // The tile at a quarter of the resolution, for look-ups of colours as they are stored, and of colours that are
   // divided by alpha; null: there is none.
@@ -32,7 +33,7 @@ class Image {
   std::string name;
   std::vector<ImageTile> tiles;
   std::vector<std::string> warnings;
-  bool ignores_alpha = false;     // look-ups return alpha 1
+  bool ignores_alpha = false;     // all texels count as opaque
   bool has_alpha = false;         // some texel is not opaque
   bool associates_alpha = false;  // colours are multiplied by alpha
   Rgb mean = Rgb(0.0f);           // scene-linear mean colour

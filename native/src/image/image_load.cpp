@@ -105,6 +105,8 @@ std::shared_ptr<const Image> load_image(const ImageSource& source, const ColorMa
     if (decode_tile(tile, &decoded, &problem, &hash)) {
       problem = decoded.warning;
       stored = convert(source, std::move(decoded), color);
+      // Cycles keeps one channel of such files, and clips colours only. Packed files have four channels in Blender.
+      stored.is_opaque_outside = tile.source == GRADUS_IMAGE_FILE && stored.channels == 1;
       mean = mean_color(stored);
       image->has_alpha = image->has_alpha || (!image->ignores_alpha && has_transparency(stored));
     } else {

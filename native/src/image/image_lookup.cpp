@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "base/fault.h"
 #include "image/color.h"
@@ -154,6 +155,27 @@ const ImageTile& resolution_for(const ImageTile& full, float extent, bool is_str
   }
 }
 
+template <int N>
+float total_weight(const Taps<N>& taps) {
+  return std::accumulate(taps.weight.begin(), taps.weight.end(), 0.0f);
+}
+
+// Returns the share of a look-up that is inside a clipped tile.
+float coverage(const ImageTile& tile, const Vec2& uv, Interpolation interpolation) {
+  const auto along = [&](float x, uint32_t size) {
+    const float u = reduce(x, Extension::Clip);
+    switch (interpolation) {
+      case Interpolation::Closest:
+        return total_weight(closest_taps(u, size, Extension::Clip));
+      case Interpolation::Cubic:
+        return total_weight(cubic_taps(u, size, Extension::Clip));
+      default:
+        return total_weight(linear_taps(u, size, Extension::Clip));
+    }
+  };
+  return along(uv.x, tile.width) * along(uv.y, tile.height);
+}
+
 // Returns the stored value at `uv`, before conversion to scene-linear.
 Vec4 interpolate(const ImageTile& tile, const Vec2& uv, Interpolation interpolation, Extension extension) {
   const float u = reduce(uv.x, extension);
@@ -208,11 +230,15 @@ Vec4 ImageStore::lookup(uint32_t index, const Vec2& uv, Interpolation interpolat
   if (tile == nullptr || tile->width == 0) {
     return kMissing;
   }
+  const bool is_opaque_outside = tile->is_opaque_outside;
   if (extent > 0.0f && interpolation == Interpolation::Linear) {
     tile = &resolution_for(*tile, extent, unassociate);
   }
   Vec4 value = interpolate(*tile, local, interpolation, extension);
   if (image.ignores_alpha) {
+    value.w = extension == Extension::Clip ? coverage(*tile, local, interpolation) : 1.0f;
+  }
+  if (is_opaque_outside) {
     value.w = 1.0f;
   }
   if (unassociate && value.w != 0.0f && value.w != 1.0f) {

@@ -64,10 +64,11 @@ class ImageStore {
 
   // Returns scene-linear RGBA as Cycles' image node does. Colours are multiplied by alpha, except for the alpha modes
   // CHANNEL_PACKED and NONE; `unassociate` divides by it, which Cycles does if the node's Alpha output is used. The
-  // result is 0 outside a clipped image, and magenta for absent UDIM tiles and for kNone. Any uv is allowed; one that
-  // is not finite counts as 0. `extent` is the length in uv that the result may be a mean of, if the image has lower
-  // resolutions (image/coarser_tile.h); 0 is full resolution, as are Closest, which shows the texels themselves, and
-  // Cubic, whose mean is another one if values are encoded.
+  // result is 0 outside a clipped image, but for the alpha of files with one channel, which is 1; and magenta for
+  // absent UDIM tiles and for kNone. Any uv is allowed; one that is not finite counts as 0. `extent` is the length in
+  // uv that the result may be a mean of, if the image has lower resolutions (image/coarser_tile.h); 0 is full
+  // resolution, as are Closest, which shows the texels themselves, and Cubic, whose mean is another one if values are
+  // encoded.
   Vec4 lookup(uint32_t index, const Vec2& uv, Interpolation interpolation, Extension extension,
               bool unassociate = false, float extent = 0.0f) const;
   // Returns the scene-linear mean colour of the image.

@@ -43,7 +43,7 @@ void attribute_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   if (channels == 0) v.w = 1.0f;  // as in Cycles, a missing attribute is black and opaque
   if (channels == 1) v = Vec4(v.x, v.x, v.x, 1.0f);
   out[0] = out[1] = Vec4(Vec3(v), 1.0f);
-  out[2] = splat(channels == 1 ? v.x : mean_component(Vec3(v)));
+  out[2] = splat(channels <= 2 ? v.x : mean_component(Vec3(v)));  // of two components Cycles takes the first
   out[3] = splat(v.w);
 }
 

@@ -7,7 +7,8 @@
 namespace gradus::shading {
 namespace {
 
-Vec3 normal_or_own(const Vec3& n, const ShadeContext& c) { return n == Vec3(0.0f) ? c.normal : safe_normalize(n); }
+// Returns a normal of any length, as Cycles takes it, or that of the surface if the input has no link.
+Vec3 normal_or_own(const Vec3& n, const ShadeContext& c) { return n == Vec3(0.0f) ? c.normal : n; }
 
 float flag(const ShadeContext& c, uint32_t bit) { return c.ray.flags & bit ? 1.0f : 0.0f; }
 
