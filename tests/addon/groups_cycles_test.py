@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 from support import images, recording
-from support.cycles import picture, pictures
+from support.cycles import pictures
 from support.nodes import Graph, new_material, show
 
 Socket = bpy.types.NodeSocket
@@ -209,13 +209,14 @@ def loop_of_shaders(graph: Graph) -> Socket:
 def test_a9_loops_of_links(make: Callable[[Graph], Socket], scene: bpy.types.Scene, tmp_path: Path) -> None:
     """Regression: from Blender 5.0 on, Cycles shows a material with a loop black.
 
-    It hangs at the second such render of a session, so that black is given here.
+    Blender 5 hangs at the second such render of a session, so that only one runs there.
     """
+    if bpy.app.version >= (5, 0, 0) and make is not loop_of_numbers:
+        pytest.skip("Blender 5 hangs at the second render of a loop")
     recording.add_camera(type="ORTHO", ortho_scale=1.2).location = (0.0, 0.0, 5.0)
     bpy.ops.mesh.primitive_uv_sphere_add()
     material = new_material()
     show(material, make(Graph(material)))
     bpy.context.object.data.materials.append(material)
-    found = picture(scene, tmp_path, "GRADUS")
-    expected = picture(scene, tmp_path, "CYCLES") if bpy.app.version < (5, 0, 0) else np.zeros_like(found)
+    expected, found = pictures(scene, tmp_path)
     np.testing.assert_allclose(found, expected, atol=0.005)
