@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 import pytest
 from support import images, recording
-from support.cycles import pictures
+from support.cycles import picture, pictures
 from support.nodes import Graph, new_material, show
 
 Socket = bpy.types.NodeSocket
@@ -207,16 +207,12 @@ def loop_of_shaders(graph: Graph) -> Socket:
 
 @pytest.mark.parametrize("make", [loop_of_numbers, loop_apart, loop_in_a_group, loop_of_shaders])
 def test_a9_loops_of_links(make: Callable[[Graph], Socket], scene: bpy.types.Scene, tmp_path: Path) -> None:
-    """Regression: from Blender 5.0 on, Cycles shows a material with a loop black.
-
-    Blender 5 hangs at the second such render of a session, so that only one runs there.
-    """
-    if bpy.app.version >= (5, 0, 0) and make is not loop_of_numbers:
-        pytest.skip("Blender 5 hangs at the second render of a loop")
+    """Regression: from Blender 5.0 on, Cycles shows a material with a loop black. As it may hang, it is not run."""
     recording.add_camera(type="ORTHO", ortho_scale=1.2).location = (0.0, 0.0, 5.0)
     bpy.ops.mesh.primitive_uv_sphere_add()
     material = new_material()
     show(material, make(Graph(material)))
     bpy.context.object.data.materials.append(material)
-    expected, found = pictures(scene, tmp_path)
+    found = picture(scene, tmp_path, "GRADUS")
+    expected = picture(scene, tmp_path, "CYCLES") if bpy.app.version < (5, 0, 0) else np.zeros_like(found)
     np.testing.assert_allclose(found, expected, atol=0.005)

@@ -254,7 +254,7 @@ def test_e5_loop_through_links_ends() -> None:
     links.new(first.outputs[0], second.inputs["Color"])
     links.new(second.outputs[0], first.inputs["Color"])
     show(material, second.outputs[0])
-    assert translate(material).surface >= 0
+    assert (translate(material).surface >= 0) == (bpy.app.version < (5, 0, 0))  # there Blender drops the loop
 
 
 def test_e5_loop_through_muted_nodes_ends() -> None:
@@ -266,8 +266,7 @@ def test_e5_loop_through_muted_nodes_ends() -> None:
     links.new(third.outputs[0], first.inputs["Color"])
     first.mute = second.mute = True
     show(material, third.outputs[0])
-    has_surface = translate(material).surface >= 0
-    assert has_surface or bpy.app.version >= (5, 0, 0)  # there Blender follows muted nodes, and drops the loop
+    assert (translate(material).surface >= 0) == (bpy.app.version < (5, 0, 0))
 
 
 def nested_group(depth: int) -> bpy.types.NodeTree:

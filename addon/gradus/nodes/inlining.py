@@ -1,7 +1,7 @@
 """Trees with nodes that Blender evaluates for renderers: zones, closures, bundles, switches, muted nodes and others.
 
-Trees with loops of links are among them, and groups that pass on the value of a socket which shows none: Blender then
-decides whether what reads it has coordinates or a normal of its own, or the value.
+Among them are groups that pass on the value of a socket which shows none. Blender then decides whether what reads it
+has coordinates or a normal of its own, or the value.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def _has_such_nodes(tree: Any, seen: set[int]) -> bool:
     if tree is None or tree.as_pointer() in seen:
         return False
     seen.add(tree.as_pointer())
-    return any(node.mute or _is_such(node, seen) for node in tree.nodes) or _has_loop(tree)
+    return any(node.mute or _is_such(node, seen) for node in tree.nodes)
 
 
 def _is_such(node: Any, seen: set[int]) -> bool:
@@ -38,10 +38,20 @@ def _has_hidden_values(node: Any) -> bool:
     )
 
 
-def _has_loop(tree: Any) -> bool:
-    """Returns whether links lead from a node back to it. Blender makes an empty tree of one with a loop."""
-    targets: dict[Any, list[Any]] = {}
-    waiting: dict[Any, int] = {}  # number of links from nodes that are not yet passed
+def has_loop(tree: Any) -> bool:
+    """Returns whether links of a tree or of a group in it lead from a node back to it.
+
+    From 5.0 on, Blender makes an empty tree of such a one, and may hang at the second one of a session.
+    """
+    return _has_loop(tree, set())
+
+
+def _has_loop(tree: Any, seen: set[int]) -> bool:
+    if tree is None or tree.as_pointer() in seen:
+        return False
+    seen.add(tree.as_pointer())
+    targets: dict[int, list[int]] = {}
+    waiting: dict[int, int] = {}  # number of links from nodes that are not yet passed
     for link in tree.links:
         source, target = link.from_node.as_pointer(), link.to_node.as_pointer()
         targets.setdefault(source, []).append(target)
@@ -52,4 +62,5 @@ def _has_loop(tree: Any) -> bool:
             waiting[target] -= 1
             if waiting[target] == 0:
                 ready.append(target)
-    return any(waiting.values())
+    groups = (node.node_tree for node in tree.nodes if node.type == "GROUP")
+    return any(waiting.values()) or any(_has_loop(group, seen) for group in groups)

@@ -40,6 +40,8 @@ def translate(block: Any, kind: str, resources: Any, version: tuple[int, ...] | 
     if tree is None:
         program.surface = _without_nodes(program, block, kind)
         return program
+    if version >= (5, 0, 0) and inlining.has_loop(tree):
+        return program  # black, as in Cycles
     limit = sys.getrecursionlimit()
     sys.setrecursionlimit(max(limit, _RECURSION_LIMIT))
     try:
