@@ -256,8 +256,8 @@ def warning(image: Any, number: int | None, abspath: Any) -> str:
         return f"Image '{image.name}' has changes that are not saved: tiles other than the first are shown as saved"
     if _is_divided_by_cycles(image):
         return (
-            f"Image '{image.name}' is channel-packed, and Cycles before Blender 5.0 divides colours of its colour space "
-            "by the fourth channel"
+            f"Image '{image.name}' is channel-packed, and Cycles before Blender 5.0 divides colours of its colour "
+            "space by the fourth channel"
         )
     if file_pixels.is_available() or not _head(_path(image, number, abspath)).startswith(_FILM_SCANS):
         return ""

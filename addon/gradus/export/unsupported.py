@@ -71,8 +71,8 @@ def of_scene(scene: Any, view_layer: Any) -> Iterator[str]:
         yield f"World '{world.name}': its light is shadowed, although its setting Shadows is off"
     if getattr(getattr(view_layer, "cycles", None), "denoising_store_passes", False):
         yield (
-            f"View layer '{view_layer.name}': Denoising Normal, Albedo and Depth serve the reconstruction, too, so that "
-            "they differ from those of Cycles where lights and mirrors show"
+            f"View layer '{view_layer.name}': Denoising Normal, Albedo and Depth serve the reconstruction, too, so "
+            "that they differ from those of Cycles where lights and mirrors show"
         )
     passes = list(missing_passes(view_layer))
     if passes:

@@ -145,7 +145,7 @@ class GRADUS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
 
 
 class GRADUS_OT_copy_from_cycles(bpy.types.Operator):
-    """Copy bounces, caustics, Filter Glossy and film settings from the Cycles settings of this scene"""
+    """Copy bounces, caustics, clamps, Filter Glossy and film settings from the Cycles settings of this scene"""
 
     bl_idname = "gradus.copy_from_cycles"
     bl_label = "Copy from Cycles"
