@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -78,7 +77,7 @@ KeptFieldMemory::~KeptFieldMemory() {
   const std::lock_guard lock(all.mutex);
   if (--all.owners > 0) return;
   for (const auto& [bytes, blocks] : all.blocks) {
-    for (float* block : blocks) std::free(block);
+    for (float* block : blocks) ::operator delete(block);
   }
   all.blocks.clear();
   all.bytes = 0;
@@ -91,21 +90,16 @@ size_t kept_field_bytes() {
 
 float* take_field_memory(size_t count) {
   const size_t bytes = count * sizeof(float);
-  if (bytes >= kMinKept) {
-    if (float* const block = take_kept(bytes)) {
-      std::memset(block, 0, bytes);
-      return block;
-    }
-  }
-  void* const memory = std::calloc(count, sizeof(float));
-  if (memory == nullptr && count > 0) throw std::bad_alloc();
-  return static_cast<float*>(memory);
+  float* block = bytes >= kMinKept ? take_kept(bytes) : nullptr;
+  if (block == nullptr) block = static_cast<float*>(::operator new(bytes));
+  std::memset(block, 0, bytes);
+  return block;
 }
 
 void free_field_memory(float* memory, size_t count) noexcept {
   const size_t bytes = count * sizeof(float);
   if (bytes >= kMinKept && keep(memory, bytes)) return;
-  std::free(memory);
+  ::operator delete(memory);
 }
 
 }  // namespace gradus::reconstruct

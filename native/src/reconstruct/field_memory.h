@@ -28,7 +28,7 @@ float* take_field_memory(size_t count);
 // Gives back what take_field_memory(count) returned.
 void free_field_memory(float* memory, size_t count) noexcept;
 
-// Allocator of vectors of floats that are made with a number of zeros. New pages are 0 without a pass over them.
+// Allocator of vectors of floats that are made with a number of zeros, which take_field_memory() has written.
 template <class T>
 struct FieldAllocator {
   using value_type = T;
