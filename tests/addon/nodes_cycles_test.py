@@ -310,44 +310,6 @@ def test_a9_surfaces_without_a_material(stage: bpy.types.Scene, tmp_path: Path) 
     assert np.quantile(difference, 0.95) / expected.mean() < 0.05
 
 
-SLOTS = {
-    "empty slot": (("OBJECT", False), ("DATA", True)),
-    "two empty slots": (("OBJECT", False), ("OBJECT", False)),
-    "material of the object": (("OBJECT", True), ("DATA", True)),
-    "material of the data": (("DATA", True), ("OBJECT", False)),
-}
-
-
-@pytest.mark.parametrize("is_instance", [False, True])
-@pytest.mark.parametrize("name", SLOTS)
-def test_a9_slots_of_objects(name: str, is_instance: bool, scene: bpy.types.Scene, tmp_path: Path) -> None:
-    """Regression: from Blender 5.2 on, an empty slot of an object does not show the material of its mesh."""
-    bpy.ops.mesh.primitive_grid_add(x_subdivisions=2, y_subdivisions=1, size=2.0)
-    obj = bpy.context.object
-    obj.data.polygons[1].material_index = 1
-    for index, (link, has_material) in enumerate(SLOTS[name]):
-        for place in ("data", "object"):
-            material = new_material()
-            color = (0.2 + 0.6 * index, 0.3, 0.9 if place == "object" else 0.1)
-            show(material, Graph(material)("CombineXYZ", "Vector", dict(zip("XYZ", color, strict=True))))
-            if place == "data":
-                obj.data.materials.append(material)
-            elif link == "OBJECT":
-                obj.material_slots[index].link = "OBJECT"
-                obj.material_slots[index].material = material if has_material else None
-    if is_instance:
-        source = bpy.data.collections.new("Source")
-        source.objects.link(obj)
-        scene.collection.objects.unlink(obj)
-        empty = bpy.data.objects.new("Instancer", None)
-        empty.instance_type, empty.instance_collection = "COLLECTION", source
-        scene.collection.objects.link(empty)
-    scene.world = bpy.data.worlds.new("World")
-    recording.add_camera(type="ORTHO", ortho_scale=2.0).location = (0.0, 0.0, 3.0)
-    expected, found = pictures(scene, tmp_path)
-    np.testing.assert_allclose(found, expected, atol=0.02)
-
-
 @pytest.fixture
 def bare(stage: bpy.types.Scene) -> Iterator[bpy.types.Scene]:
     """Returns the stage with its objects hidden. The active object, which a test adds, is removed afterwards."""
@@ -490,6 +452,44 @@ def test_a9_alpha_of_files(kind: str, is_packed: bool, scene: bpy.types.Scene, t
     expected, found = pictures(scene, tmp_path)
     inside = np.s_[2:7, 1:15]  # without the blocks at edges
     np.testing.assert_allclose(found[inside], expected[inside], rtol=0.02, atol=0.01)
+
+
+SLOTS = {
+    "empty slot": (("OBJECT", False), ("DATA", True)),
+    "two empty slots": (("OBJECT", False), ("OBJECT", False)),
+    "material of the object": (("OBJECT", True), ("DATA", True)),
+    "material of the data": (("DATA", True), ("OBJECT", False)),
+}
+
+
+@pytest.mark.parametrize("is_instance", [False, True])
+@pytest.mark.parametrize("name", SLOTS)
+def test_a9_slots_of_objects(name: str, is_instance: bool, scene: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: from Blender 5.2 on, an empty slot of an object does not show the material of its mesh."""
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=2, y_subdivisions=1, size=2.0)
+    obj = bpy.context.object
+    obj.data.polygons[1].material_index = 1
+    for index, (link, has_material) in enumerate(SLOTS[name]):
+        for place in ("data", "object"):
+            material = new_material()
+            color = (0.2 + 0.6 * index, 0.3, 0.9 if place == "object" else 0.1)
+            show(material, Graph(material)("CombineXYZ", "Vector", dict(zip("XYZ", color, strict=True))))
+            if place == "data":
+                obj.data.materials.append(material)
+            elif link == "OBJECT":
+                obj.material_slots[index].link = "OBJECT"
+                obj.material_slots[index].material = material if has_material else None
+    if is_instance:
+        source = bpy.data.collections.new("Source")
+        source.objects.link(obj)
+        scene.collection.objects.unlink(obj)
+        empty = bpy.data.objects.new("Instancer", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", source
+        scene.collection.objects.link(empty)
+    scene.world = bpy.data.worlds.new("World")
+    recording.add_camera(type="ORTHO", ortho_scale=2.0).location = (0.0, 0.0, 3.0)
+    expected, found = pictures(scene, tmp_path)
+    np.testing.assert_allclose(found, expected, atol=0.02)
 
 
 def save_stripes(scene: bpy.types.Scene, kind: str, mode: str, folder: Path) -> str:
