@@ -20,7 +20,6 @@ constexpr size_t kMinKept = size_t(1) << 18;
 struct Kept {
   std::mutex mutex;
   int owners = 0;
-  size_t bytes = 0;
   std::map<size_t, std::vector<float*>> blocks;
 };
 
@@ -46,11 +45,10 @@ float* take_kept(size_t bytes) {
   if (found == all.blocks.end() || found->second.empty()) return nullptr;
   float* const block = found->second.back();
   found->second.pop_back();
-  all.bytes -= bytes;
   return block;
 }
 
-// Keeps a block, unless nobody asks for that. Returns whether it does.
+// Keeps a block if a KeptFieldMemory exists. Returns whether it does.
 bool keep(float* block, size_t bytes) noexcept {
   Kept& all = kept();
   const std::lock_guard lock(all.mutex);
@@ -61,7 +59,6 @@ bool keep(float* block, size_t bytes) noexcept {
   } catch (const std::bad_alloc&) {
     return false;
   }
-  all.bytes += bytes;
   return true;
 }
 
@@ -80,12 +77,13 @@ KeptFieldMemory::~KeptFieldMemory() {
     for (float* block : blocks) ::operator delete(block);
   }
   all.blocks.clear();
-  all.bytes = 0;
 }
 
 size_t kept_field_bytes() {
   const std::lock_guard lock(kept().mutex);
-  return kept().bytes;
+  size_t sum = 0;
+  for (const auto& [bytes, blocks] : kept().blocks) sum += bytes * blocks.size();
+  return sum;
 }
 
 float* take_field_memory(size_t count) {
