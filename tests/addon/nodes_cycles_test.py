@@ -404,15 +404,17 @@ FILES = {
 }
 
 
-def save_half_transparent(scene: bpy.types.Scene, kind: str, folder: Path) -> str:
-    """Saves a flat image of alpha 0.5 in a format and returns its path."""
-    image = bpy.data.images.new("flat", 8, 8, alpha=True, float_buffer=kind == "OPEN_EXR")
-    image.pixels.foreach_set([0.4, 0.3, 0.15, 0.5] * 64)
+def save_columns(
+    scene: bpy.types.Scene, kind: str, mode: str, folder: Path, alphas: tuple[float, float], is_float: bool
+) -> str:
+    """Saves an image whose columns have two alphas in turn, in a format, and returns its path."""
+    image = bpy.data.images.new("columns", 8, 8, alpha=True, float_buffer=is_float)
+    image.pixels.foreach_set([value for alpha in alphas for value in (0.4, 0.3, 0.15, alpha)] * 32)
     settings = scene.render.image_settings
-    settings.file_format, settings.color_mode = kind.split()[0], "RGBA"
+    settings.file_format, settings.color_mode = kind.split()[0], mode
     for name, value in FILES[kind].items():
         setattr(settings, name, value)
-    path = str(folder / f"flat.{kind.split()[0].lower()}")
+    path = str(folder / f"columns.{kind.split()[0].lower()}")
     image.save_render(path, scene=scene)
     bpy.data.images.remove(image)
     return path
@@ -429,7 +431,7 @@ def test_a9_alpha_of_files(kind: str, is_packed: bool, scene: bpy.types.Scene, t
         pytest.skip("Gradus shows Blender's pixels, because this Blender has no OpenImageIO for Python")
     if is_packed and kind in {"TARGA", "WEBP", "TIFF", "BMP", "IRIS", "DPX"}:
         pytest.skip("Cycles reads packed files of this format in other ways from version to version")
-    path = save_half_transparent(scene, kind, tmp_path)
+    path = save_columns(scene, kind, "RGBA", tmp_path, (0.5, 0.5), is_float=kind == "OPEN_EXR")
     modes = ["STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"]
     for column, mode in enumerate(modes):
         for row, is_used in enumerate((False, True)):
@@ -492,20 +494,6 @@ def test_a9_slots_of_objects(name: str, is_instance: bool, scene: bpy.types.Scen
     np.testing.assert_allclose(found, expected, atol=0.02)
 
 
-def save_stripes(scene: bpy.types.Scene, kind: str, mode: str, folder: Path) -> str:
-    """Saves an image with stripes of alpha 0.5 and 1 in a format and returns its path."""
-    image = bpy.data.images.new("stripes", 8, 8, alpha=True, float_buffer=True)
-    image.pixels.foreach_set(([0.4, 0.3, 0.15, 0.5] + [0.4, 0.3, 0.15, 1.0]) * 32)
-    settings = scene.render.image_settings
-    settings.file_format, settings.color_mode = kind.split()[0], mode
-    for name, value in FILES[kind].items():
-        setattr(settings, name, value)
-    path = str(folder / f"stripes.{kind.split()[0].lower()}")
-    image.save_render(path, scene=scene)
-    bpy.data.images.remove(image)
-    return path
-
-
 CLIPPED = [
     *((kind, mode) for kind in ("PNG", "PNG 16 bit", "TIFF", "OPEN_EXR") for mode in ("RGBA", "BW")),
     ("generated", "RGBA"),
@@ -525,7 +513,8 @@ def test_a9_alpha_outside_of_clipped_images(kind: str, mode: str, scene: bpy.typ
     if kind == "generated":
         image = bpy.data.images.new("generated", 8, 8, alpha=True)
     else:
-        path = save_stripes(scene, "PNG" if kind in {"packed", "missing"} else kind, mode, tmp_path)
+        file = "PNG" if kind in {"packed", "missing"} else kind
+        path = save_columns(scene, file, mode, tmp_path, (0.5, 1.0), is_float=True)
         image = bpy.data.images.load(path)
     if kind == "packed":
         image.pack()

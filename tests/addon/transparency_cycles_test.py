@@ -26,7 +26,7 @@ def add_plane(look: bpy.types.Material, location: tuple[float, float, float], si
 def sheets() -> bpy.types.Scene:
     """Returns a scene with 0 to 5 clear sheets, from left to right, and a mirror below.
 
-    Behind the sheets are a wall that is lit, a wall that emits and the world. The sun shines through the sheets.
+    Behind the sheets are a wall that is lit, a wall that emits and the world. The sun lights them through the sheets.
     """
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene

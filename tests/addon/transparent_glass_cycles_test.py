@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from support import images, recording
+from support import cycles, recording
 from support.nodes import Graph, new_material, new_world, shader_material, show
 
 
@@ -110,13 +110,8 @@ CASES: dict[str, Callable[[bpy.types.Scene], None]] = {
 
 def picture(scene: bpy.types.Scene, folder: Path, engine: str, **settings: Any) -> np.ndarray:
     """Renders Combined and returns means of blocks of 4×4 pixels."""
-    scene.render.engine = engine
-    cycles = scene.cycles
-    cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = 128, False, False
-    cycles.sample_clamp_indirect, cycles.blur_glossy = 0.0, 0.0
-    cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
-    settings = {"integrator": "PATH", "reconstruction": "NONE", "samples": 128} | settings
-    return images.render(scene, folder, **settings)["Combined"].reshape(9, 4, 16, 4, 4).mean(axis=(1, 3))
+    scene.cycles.sample_clamp_indirect, scene.cycles.blur_glossy = 0.0, 0.0
+    return cycles.blocks(cycles.passes(scene, folder, engine, 128, **settings)["Combined"])
 
 
 def compare(expected: np.ndarray, found: np.ndarray) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from support import images
+from support import cycles, images
 from support.nodes import Graph, new_material, show
 
 # Names of each pass: until Blender 4.5 and since 5.0, and of the property that adds it.
@@ -50,22 +50,16 @@ def sheets() -> bpy.types.Scene:
     return scene
 
 
-def blocks(scene: bpy.types.Scene, folder: Path, engine: str, names: tuple[str, str]) -> np.ndarray:
+def picture_of(scene: bpy.types.Scene, folder: Path, engine: str, names: tuple[str, str]) -> np.ndarray:
     """Renders a pass and returns means of blocks of 4×4 pixels."""
-    scene.render.engine = engine
-    cycles = scene.cycles
-    cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = 64, False, False
-    cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
-    box = {"pixel_filter": "BOX", "filter_width": 1.0}
-    passes = images.render(scene, folder, samples=64, integrator="PATH", reconstruction="NONE", **box)
-    image = next(passes[name] for name in names if name in passes)
-    return image[..., :3].reshape(9, 4, 16, 4, -1).mean(axis=(1, 3))
+    passes = cycles.passes(scene, folder, engine, 64)
+    return cycles.blocks(next(passes[name] for name in names if name in passes)[..., :3])
 
 
 @pytest.mark.parametrize("names", PASSES)
 def test_passes_of_sheets_are_those_of_cycles(sheets: bpy.types.Scene, tmp_path: Path, names: tuple[str, str]) -> None:
     """Mist was negative and ambient occlusion above 1: the chance to pass a sheet was counted, its opacity was not."""
-    cycles, gradus = (blocks(sheets, tmp_path, engine, names) for engine in ("CYCLES", "GRADUS"))
-    assert cycles.max() > cycles.min() + 0.2
-    np.testing.assert_allclose(gradus, cycles, atol=0.03)
-    np.testing.assert_allclose(gradus.mean(), cycles.mean(), rtol=0.01)
+    expected, found = (picture_of(sheets, tmp_path, engine, names) for engine in ("CYCLES", "GRADUS"))
+    assert expected.max() > expected.min() + 0.2
+    np.testing.assert_allclose(found, expected, atol=0.03)
+    np.testing.assert_allclose(found.mean(), expected.mean(), rtol=0.01)

@@ -12,14 +12,14 @@ namespace {
 
 using test::PathScene;
 
-// Adds a floor and a roof under a lamp, a sun and a grey sky, so that all three groups light it.
+// Adds a floor and a roof under a point light, a sun and a grey sky, so that all three groups light it.
 void add_lit_floor(PathScene* scene) {
   const uint64_t grey = scene->material(test::matte(Rgb(0.6f)));
   scene->quad(Vec3(-2, 0, 2), Vec3(4, 0, 0), Vec3(0, 0, -4), grey);
   scene->quad(Vec3(-2, 1.5f, 2), Vec3(0, 0, -4), Vec3(2, 0, 0), grey);
-  GradusLight lamp = test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(0.5f, 1, 0)), Rgb(1.0f));
-  lamp.radius = 0.2f;
-  scene->light(lamp);
+  GradusLight point = test::make_light(GRADUS_LIGHT_POINT, test::translation(Vec3(0.5f, 1, 0)), Rgb(1.0f));
+  point.radius = 0.2f;
+  scene->light(point);
   scene->light(test::make_light(GRADUS_LIGHT_SUN, Mat4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1), Rgb(1.0f)));
   scene->world(Rgb(0.4f));
   scene->camera(Vec3(0, 0.8f, 2.5f), Vec3(0), 1.0f);

@@ -11,8 +11,8 @@ import numpy as np
 from . import images
 
 
-def picture(scene: bpy.types.Scene, folder: Path, engine: str, samples: int = 16, **changed: Any) -> np.ndarray:
-    """Renders an image and returns means of blocks of 4×4 pixels. `changed` are settings of Gradus."""
+def passes(scene: bpy.types.Scene, folder: Path, engine: str, samples: int = 16, **changed: Any) -> images.Passes:
+    """Renders an image without a denoiser and returns its passes. `changed` are settings of Gradus."""
     scene.render.engine = engine
     cycles = scene.cycles
     cycles.samples, cycles.use_denoising, cycles.use_adaptive_sampling = samples, False, False
@@ -25,8 +25,17 @@ def picture(scene: bpy.types.Scene, folder: Path, engine: str, samples: int = 16
         "pixel_filter": "BOX",
         "filter_width": 1.0,
     }
-    image = images.render(scene, folder, **(settings | changed))["Combined"][..., :3]
-    return image.reshape(9, 4, 16, 4, 3).mean(axis=(1, 3))
+    return images.render(scene, folder, **(settings | changed))
+
+
+def blocks(image: np.ndarray) -> np.ndarray:
+    """Returns means of blocks of 4×4 pixels of an image of 64×36."""
+    return image.reshape(9, 4, 16, 4, -1).mean(axis=(1, 3))
+
+
+def picture(scene: bpy.types.Scene, folder: Path, engine: str, samples: int = 16, **changed: Any) -> np.ndarray:
+    """Renders an image and returns blocks() of its colours. `changed` are settings of Gradus."""
+    return blocks(passes(scene, folder, engine, samples, **changed)["Combined"][..., :3])
 
 
 def pictures(scene: bpy.types.Scene, folder: Path, samples: int = 16) -> tuple[np.ndarray, np.ndarray]:

@@ -430,7 +430,7 @@ TEST(C7_Sequence, StartingTheRenderOfAStoredFrameReadsNoPixels) {
   const auto task = again->sample(pan.at(1), with_passes(settings_of(1, 12)));
   EXPECT_EQ(again->folder().loads(), 0u);
   run(task.get());
-  EXPECT_EQ(again->folder().loads(), 2u) << "what was read to find damage is gone on with";
+  EXPECT_EQ(again->folder().loads(), 2u) << "what was read to find damage is used";
 }
 
 // Regression: correspondences are pixel numbers, which exceeded 31 bits.
