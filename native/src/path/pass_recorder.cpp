@@ -147,6 +147,11 @@ void PassRecorder::environment(int scatterings, const Rgb& value) {
   add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT);
 }
 
+void PassRecorder::film_background(const Rgb& throughput, const Rgb& light, const Rgb& value) {
+  if (!features_done_) add_albedo(throughput * light);
+  environment(0, value);
+}
+
 void PassRecorder::light(const PathState& state, const Vertex& vertex, bsdf::ScatterClass c, const LightSample& light,
                          const Rgb& value) {
   if (channels_.has_groups()) channels_.light(light::light_group_of(context_.scene, light.point), value);

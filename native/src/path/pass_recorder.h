@@ -53,8 +53,12 @@ class PassRecorder final : public SurfaceVisitor {
   // Records radiance that a ray has found, before any weight, as a feature of its component. It stands for the albedo
   // of what a mirror or glass shows. `further` is its distance from the end of the path so far.
   void record_emission(int component, const Rgb& light, float further = 0.0f);
+  // Returns whether film_background() records anything.
+  bool records_film_background() const { return plane(GRADUS_PASS_ENVIRONMENT) != nullptr; }
+  // Records the world where a transparent film hides it: its radiance, and what it would contribute.
+  void film_background(const Rgb& throughput, const Rgb& light, const Rgb& value);
   // Record the contribution of an analytic light, a surface or the world after a number of scattering events, 0 if the
-  // camera sees it.
+  // camera sees it, also through clear glass (PathContext::glass_limit).
   void emission(int scatterings, const light::LightPoint& point, const Rgb& value);
   void emission(int scatterings, const Vertex& vertex, const Rgb& value);
   void environment(int scatterings, const Rgb& value);
