@@ -114,6 +114,8 @@ def clamped(scene: bpy.types.Scene) -> None:
 
 CASES: dict[str, Callable[[bpy.types.Scene], None]] = {
     "clear film": lambda scene: None,
+    "transparent glass": transparent_glass,
+    "rough transparent glass": rough_glass,
     "hidden sky": hidden_sky,
     "sky without camera rays": sky_without_camera_rays,
     "held out": held_out,
@@ -142,6 +144,8 @@ def test_light_passes(name: str, stage: bpy.types.Scene, tmp_path: Path) -> None
     CASES[name](stage)
     expected, found = (cycles.passes(stage, tmp_path, engine, 64) for engine in ("CYCLES", "GRADUS"))
     for names in (("Combined",), *PASSES):
+        if "glass" in name and "Glossy Direct" in names:
+            continue  # a quotient by a colour to which all sides of the glass add
         compare(pass_of(expected, names), pass_of(found, names), names[0])
 
 

@@ -152,14 +152,14 @@ class PathTracer {
       state_.ray = known->ray;
       state_.ray.state.random = sampler.key();
       if (records_closures()) shade_vertex(context_, state_.ray.state, vertex);
-      if (visitor() != nullptr && segment_->end == SegmentEnd::Surface)
-        visitor()->visit(*vertex, state_.ray.state, segment_->weight);
+      SurfaceVisitor* const visiting = visitor();
+      if (visiting != nullptr && segment_->end == SegmentEnd::Surface)
+        visiting->visit(sampler, *vertex, state_.ray.state, segment_->weight);
     } else {
       state_.ray = camera_path_ray(context_, context_.camera.ray(sample));
       state_.ray.state.random = sampler.key();
       trace_to_vertex(sampler, known != nullptr ? &known->hit : nullptr, vertex);
     }
-    if (recorder_ != nullptr && is_none(state_.ray.ray)) recorder_->no_ray();
     return vertex;
   }
 
@@ -187,12 +187,10 @@ class PathTracer {
 
   // Returns whether the next segment is the last one and only lights and the world can be seen on it.
   bool needs_lights_only() const { return !records_closures() && shows_only_lights(context_, state_); }
-  // Returns what sees the surfaces on a camera segment, or null.
-  SurfaceVisitor* visitor() const {
-    return recorder_ != nullptr && state_.depth == 0 ? recorder_->surface_visitor() : nullptr;
-  }
+  // Returns what sees the surfaces on the next segment, or null.
+  SurfaceVisitor* visitor() const { return recorder_ != nullptr ? recorder_->follow(state_) : nullptr; }
   // Returns whether the recorder needs the closures of the next vertex.
-  bool records_closures() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }
+  bool records_closures() const { return recorder_ != nullptr && recorder_->needs_closures(state_); }
 
   // ---- Emission that the path finds ----
 
@@ -260,7 +258,7 @@ class PathTracer {
       }
       add_transparency(holdout_alpha(state_.throughput, vertex.shade.holdout));
     }
-    if (recorder_ != nullptr) recorder_->surface(sampler, state_, vertex, *segment_);
+    if (recorder_ != nullptr) recorder_->surface(state_, vertex, *segment_);
     const Contribution c = emission_contribution(context_, source, state_, vertex);
     if (recorder_ != nullptr) recorder_->record_emission(c.component, c.light);
     if (!is_black(c.clamped)) {
