@@ -112,6 +112,8 @@ CHANGES: dict[str, Callable[[bpy.types.Scene], None]] = {
 @pytest.mark.parametrize("name", [name for name in CHANGES if name != "held out sheet"])
 def test_passes_behind_clear_surfaces(sheets: bpy.types.Scene, tmp_path: Path, name: str) -> None:
     """Mist and ambient occlusion left out surfaces that a path passed, and passes of data ended at clear glass."""
+    if name == "caught shadows" and bpy.app.version < (4, 0, 0):
+        pytest.skip("Cycles 3.4 counts shadow catchers twice in these passes")
     CHANGES[name](sheets)
     passes = [cycles.passes(sheets, tmp_path, engine, 64) for engine in ("CYCLES", "GRADUS")]
     for names in PASSES:

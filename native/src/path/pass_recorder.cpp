@@ -265,7 +265,8 @@ void PassRecorder::colors(const Rgb& weight, const Vertex& vertex) {
 
 void PassRecorder::ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex,
                                      uint32_t crossed) {
-  const Vec2 u = sampler.get2(dimension::kFirstVertex + dimension::kOcclusion);
+  // Surfaces on a segment take the blocks of later vertices, which record no occlusion, so that their noise differs.
+  const Vec2 u = sampler.get2(dimension::kFirstVertex + crossed * dimension::kPerVertex + dimension::kOcclusion);
   const Vec3 n = shown_normal(vertex);
   const Vec3 t = glm::normalize(std::fabs(n.x) > 0.5f ? glm::cross(n, Vec3(0, 1, 0)) : glm::cross(n, Vec3(1, 0, 0)));
   const float radius = std::sqrt(u.x);
