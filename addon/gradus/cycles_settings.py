@@ -123,27 +123,6 @@ def _may_be_positive(socket: Any, values: list[float]) -> bool:
     return socket.is_linked or any(value > 0.0 for value in values)
 
 
-_KINDS = ("diffuse", "glossy", "transmission")
-_PASSES_BEHIND_GLASS = (
-    ("Mist", ("use_pass_mist",)),
-    ("light passes", tuple(f"use_pass_{kind}_{part}" for kind in _KINDS for part in ("direct", "indirect", "color"))),
-    ("Cryptomatte", tuple(f"use_pass_cryptomatte_{kind}" for kind in ("object", "material", "asset"))),
-)
-"""Passes that show, in Cycles, also what is behind transparent glass, with the switches of a view layer."""
-
-
-def glass_warnings(view_layer: Any, is_transparent: bool) -> list[str]:
-    """Returns a warning about passes of a view layer if glass is transparent."""
-    listed = ", ".join(
-        name
-        for name, switches in _PASSES_BEHIND_GLASS
-        if any(getattr(view_layer, switch, False) for switch in switches)
-    )
-    if not is_transparent or not listed:
-        return []
-    return [f"With Transparent Glass, passes show glass, and in Cycles also what is behind it: {listed}"]
-
-
 def _ignored(scene: Any) -> list[str]:
     """Returns the settings of Cycles that were chosen, change its picture and have no counterpart."""
     cycles = getattr(scene, "cycles", None)

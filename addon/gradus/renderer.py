@@ -202,8 +202,6 @@ class Job:
         self.warn(cycles_settings.warnings(self.scene, given, is_followed), changes_picture=False)
         chosen = self.current.settings
         self.warn(cycles_settings.clamp_warnings(self.depsgraph, chosen.clamp_direct), changes_picture=False)
-        is_clear = bool(chosen.film_transparent and chosen.film_transparent_glass)
-        self.warn(cycles_settings.glass_warnings(self.layer, is_clear), changes_picture=False)
         self.warn_of_simulations()
         image_settings = self.scene.render.image_settings
         self.warn(output.truncated_names(image_settings, self.layer.name, self.views, self.infos, compat.VERSION))

@@ -63,15 +63,6 @@ def test_settings_without_a_counterpart_are_named(cycles: bpy.types.Scene) -> No
     assert text.endswith("does not have: Fast GI Approximation")
 
 
-@pytest.mark.parametrize("switch", ["use_pass_mist", "use_pass_glossy_color", "use_pass_cryptomatte_material"])
-def test_passes_behind_transparent_glass_are_named(switch: str, scene: bpy.types.Scene) -> None:
-    layer = scene.view_layers[0]
-    assert cycles_settings.glass_warnings(layer, True) == []
-    setattr(layer, switch, True)
-    assert len(cycles_settings.glass_warnings(layer, True)) == 1
-    assert cycles_settings.glass_warnings(layer, False) == []
-
-
 def test_use_pixel_jitter_is_named(cycles: bpy.types.Scene) -> None:
     if not hasattr(cycles.cycles, "use_pixel_jitter"):
         pytest.skip("it exists since Blender 5.2")

@@ -12,8 +12,10 @@ reconstruct::HalfSums sums_of(const film::Channel& plane, size_t pixel) {
   return sums;
 }
 
-reconstruct::HalfSums remainder_of(const film::Film& film, const LightPassPlanes& planes, size_t pixel) {
+reconstruct::HalfSums remainder_of(const film::Film& film, const LightPassPlanes& planes, const film::Channel* hidden,
+                                   size_t pixel) {
   reconstruct::HalfSums remainder{Rgb(0.0f), Rgb(0.0f)};
+  if (hidden != nullptr) remainder = sums_of(*hidden, pixel);
   for (int half = 0; half < film::kHalves; ++half) {
     for (const film::ComponentPlanes& component : film.components)
       remainder[half] += Rgb(component.primal[half][pixel]);
@@ -31,8 +33,9 @@ reconstruct::HalvedImage read_light_pass(const film::Film& film, const film::Cha
   return reconstruct::read_halves(film, [&](size_t i) { return sums_of(plane, i); });
 }
 
-reconstruct::HalvedImage read_remainder(const film::Film& film, const LightPassPlanes& planes) {
-  return reconstruct::read_halves(film, [&](size_t i) { return remainder_of(film, planes, i); });
+reconstruct::HalvedImage read_remainder(const film::Film& film, const LightPassPlanes& planes,
+                                        const film::Channel* hidden) {
+  return reconstruct::read_halves(film, [&](size_t i) { return remainder_of(film, planes, hidden, i); });
 }
 
 film::FeatureImage read_color(const film::Film& film, const film::Channel& plane) {

@@ -21,16 +21,23 @@ namespace {
 // Smallest colour by which light is divided. Below it, quotient times colour does not give back the light.
 constexpr float kMinColor = 1e-6f;
 
-// Channels that add up to the picture, together with the light that is in none of them if `has_remainder`.
+// Channels that add up to the picture, together with the light that is in none of them if `has_remainder`, or to
+// the sum of the picture and of the light that a transparent film hides.
 struct Split {
   LightPassPlanes planes;
   bool has_remainder = false;
+  const film::Channel* hidden = nullptr;  // light that is not in the picture; null if there is none
 };
+
+// Returns the pass with the light that a transparent film hides, which is not in the picture; null if there is none.
+const film::Channel* hidden_light(const film::Film& film) {
+  return film.settings.film_transparent != 0 ? film.channels.of_pass(GRADUS_PASS_ENVIRONMENT) : nullptr;
+}
 
 LightPassPlanes light_planes(const film::Film& film) {
   LightPassPlanes planes;
   for (const film::Channel& plane : film.channels) {
-    if (schema::has_bit(schema::light_passes(), plane.pass)) planes.push_back(&plane);
+    if (schema::has_bit(schema::light_passes(), plane.pass) && &plane != hidden_light(film)) planes.push_back(&plane);
   }
   return planes;
 }
@@ -46,7 +53,7 @@ LightPassPlanes group_planes(const film::Film& film) {
 // Returns the ways in which the channels of a film split its light.
 std::vector<Split> splits_of(const film::Film& film) {
   const bool are_all = (film.channels.passes() & schema::light_passes()) == schema::light_passes();
-  std::vector<Split> splits{{light_planes(film), !are_all}, {group_planes(film), true}};
+  std::vector<Split> splits{{light_planes(film), !are_all}, {group_planes(film), true, hidden_light(film)}};
   std::erase_if(splits, [](const Split& split) { return split.planes.empty(); });
   return splits;
 }
@@ -184,20 +191,28 @@ reconstruct::SampledTerms read_light_terms(const film::Film& film) {
   reconstruct::SampledTerms terms;
   for (const Split& split : splits_of(film)) {
     for (const film::Channel* plane : split.planes) terms.light.push_back(read_light_pass(film, *plane));
-    if (split.has_remainder) terms.light.push_back(read_remainder(film, split.planes));
+    if (split.has_remainder) terms.light.push_back(read_remainder(film, split.planes, split.hidden));
   }
+  if (const film::Channel* hidden = hidden_light(film)) terms.light.push_back(read_light_pass(film, *hidden));
   for (const film::Channel* color : color_planes(film))
     terms.colors.push_back(to_field(read_color(film, *color).values, 3, film.region, film.region));
   return terms;
 }
 
-bool has_light_passes(const film::Film& film) { return !splits_of(film).empty(); }
+bool has_light_passes(const film::Film& film) { return !splits_of(film).empty() || hidden_light(film) != nullptr; }
 
 SplitLight split_light(const film::Film& film, const Region& region, const std::vector<float>& rgba,
                        reconstruct::SampledTerms sampled, const CancelCheck& cancel) {
   const reconstruct::Field whole = to_field(rgba, 4, region, region);
   const Guides guides(film, region, whole);
   SplitLight result;
+  reconstruct::Field with_hidden = whole;
+  if (hidden_light(film) != nullptr) {
+    const reconstruct::PictureTerm hidden =
+        make_term(film, region, guides.shared(), std::move(sampled.light.back()), cancel);
+    for_values(&with_hidden, [&](float& value, int x, int y, int c) { value += hidden.image.row(y, c)[x]; });
+    result.passes[GRADUS_PASS_ENVIRONMENT] = reconstruct::interleave(hidden.image);
+  }
   size_t first = 0;  // term of the split's first channel
   for (const Split& split : splits_of(film)) {
     const size_t count = split.planes.size() + (split.has_remainder ? 1 : 0);
@@ -212,7 +227,7 @@ SplitLight split_light(const film::Film& film, const Region& region, const std::
       if (color != nullptr) terms.back().capacity = capacity_of(colors.back());
     }
     throw_if_cancelled(cancel);
-    reconstruct::add_up(whole, &terms);
+    reconstruct::add_up(split.hidden != nullptr ? with_hidden : whole, &terms);
     for (size_t k = 0; k < split.planes.size(); ++k) {
       if (colors[k].width() > 0) divide(colors[k], &terms[k].image);
       const film::Channel& plane = *split.planes[k];

@@ -1,5 +1,6 @@
 // Computes the light passes and the light groups of a reconstructed picture. They are as free of noise as the picture.
-// All light passes add up to it, and so do all light groups with the light that is in none.
+// All light passes add up to it, and so do all light groups with the light that is in none. What a transparent film
+// hides is in the Environment pass, beside that sum, and in light groups.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +18,8 @@ namespace gradus::output {
 bool has_light_passes(const film::Film& film);
 
 // Returns the samples of all light passes that the film has, in the order of its channels, then those of the light that
-// belongs to none of them, if there may be such light; the same of light groups; and the colour passes by which light
-// passes are divided.
+// belongs to none of them, if there may be such light; the same of light groups; the light that a transparent film
+// hides, if the film holds it; and the colour passes by which light passes are divided.
 reconstruct::SampledTerms read_light_terms(const film::Film& film);
 
 // Passes by their numbers, with 3 floats for each pixel of a region.

@@ -177,6 +177,10 @@ void rotate(const Mat3& rotation, float* directions, size_t count) {
   }
 }
 
+void clamp_to_unit(float* values, size_t count) {
+  for (size_t i = 0; i < count; ++i) values[i] = std::clamp(values[i], 0.0f, 1.0f);
+}
+
 void read_stored(const film::Film& film, const film::Channel& channel, const Region& region, float* pixels) {
   const bool is_light = channel.info.type == film::ValueType::kRadiance;
   const float scale = is_light ? film.settings.film_exposure : 1.0f;
@@ -185,6 +189,8 @@ void read_stored(const film::Film& film, const film::Channel& channel, const Reg
     float* row = pixels + channel.info.values_per_pixel * out;
     film::read_channel(film, channel, {}, first, width, scale, row);
     if (channel.pass == GRADUS_PASS_DENOISING_NORMAL) rotate(film.view_rotation, row, width);
+    // Behind clear glass surfaces may hide more than the whole of the mist.
+    if (channel.pass == GRADUS_PASS_MIST) clamp_to_unit(row, width);
     if (channel.pass == GRADUS_PASS_DEPTH) std::replace(row, row + width, 0.0f, schema::kFarDepth);
   });
 }

@@ -6,6 +6,12 @@
 
 namespace gradus::path {
 
+bool shows_data(const PathContext& context, const Vertex& vertex, const shading::RayState& ray) {
+  const geometry::InstanceData& instance = context.scene.instances[vertex.point.hit.instance];
+  const bool is_opaque_holdout = (instance.visibility & GRADUS_HOLDOUT) != 0 && !(vertex.shade.passed() > 0.0f);
+  return !is_opaque_holdout && vertex.shade.holdout != Rgb(1.0f) && !is_at_transparent_limit(context, ray);
+}
+
 ChannelRecorder::ChannelRecorder(const PathContext& context, film::Film* film, film::Counters* counters)
     : context_(context), counters_(counters) {
   for (const scene::SceneChannel& channel : context.scene.channels) {
@@ -41,12 +47,12 @@ void ChannelRecorder::visit(const Vertex& vertex, const shading::RayState& ray, 
     add(shading::shade_aovs(context_.scene, vertex.point, vertex.wo, ray));
     aovs_done_ = 1.0f - vertex.shade.passed() >= context_.settings.alpha_threshold;
   }
-  if (has_identifiers_) add_identifiers(vertex, mean_component(weight) * (1.0f - vertex.shade.passed()));
+  if (has_identifiers_ && shows_data(context_, vertex, ray))
+    add_identifiers(vertex, mean_component(weight) * (1.0f - vertex.shade.passed()));
 }
 
 void ChannelRecorder::add_identifiers(const Vertex& vertex, float weight) {
   const geometry::InstanceData& instance = context_.scene.instances[vertex.point.hit.instance];
-  if ((instance.visibility & GRADUS_HOLDOUT) != 0) return;
   for (size_t i = 0; i < channels_.size(); ++i) {
     const uint32_t kind = context_.scene.channels[i].kind;
     if (!scene::is_cryptomatte(kind)) continue;

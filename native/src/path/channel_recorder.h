@@ -8,7 +8,11 @@
 
 namespace gradus::path {
 
-class ChannelRecorder final : public SurfaceVisitor {
+// Returns whether passes of data show a surface that a ray of the given state meets. As in Cycles, they do not show
+// what is held out altogether, nor the surface at which a path ends because it has passed too many transparent ones.
+bool shows_data(const PathContext& context, const Vertex& vertex, const shading::RayState& ray);
+
+class ChannelRecorder {
  public:
   // Finds the channels in the film, which must outlive the recorder.
   ChannelRecorder(const PathContext& context, film::Film* film, film::Counters* counters);
@@ -24,9 +28,9 @@ class ChannelRecorder final : public SurfaceVisitor {
   void light(uint32_t group, const Rgb& value) {
     if (is_of_kind(group - 1, GRADUS_CHANNEL_LIGHT_GROUP)) add(group - 1, Vec4(value, 0.0f));
   }
-  // Records a surface on a camera segment, whether the path stops there or passes it. As in Cycles, AOVs are those of
-  // the first surface that is opaque enough, and of all before it.
-  void visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) override;
+  // Records a surface that the camera sees, whether the path stops there or passes it. As in Cycles, AOVs are those of
+  // the first surface that is opaque enough, and of all before it. `weight` is that of the path up to the surface.
+  void visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight);
   // Records a camera ray that leaves the scene.
   void escaped(const PathRay& ray);
 

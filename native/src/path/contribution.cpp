@@ -21,6 +21,18 @@ Contribution found_contribution(const PathContext& context, const RaySource& sou
   return c;
 }
 
+// Returns the contribution of the world, whose radiance towards the path's ray is given.
+Contribution distant_contribution(const PathContext& context, const RaySource& source, const PathState& state,
+                                  const Rgb& radiance) {
+  if (is_black(radiance)) {
+    return {};
+  }
+  const light::LightPoint point = source.sampled_light()
+                                      ? light::light_point_of_world(context.scene, state.ray.ray.direction)
+                                      : light::LightPoint{};
+  return found_contribution(context, source, state, state.throughput, radiance, light_pdf(context, source, point));
+}
+
 // Returns whether a ray shows the emission of the surface at its end. The ray of a bounce does not where the surface
 // does not light the source, and where the segment has found it already as a light crossing, because it has blockers.
 bool shows_emission(const PathContext& context, const RaySource& source, const geometry::SurfacePoint& surface) {
@@ -49,14 +61,11 @@ Contribution light_hit_contribution(const PathContext& context, const RaySource&
 }
 
 Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state) {
-  const Rgb radiance = world_radiance(context, state.ray, state.depth);
-  if (is_black(radiance)) {
-    return {};
-  }
-  const light::LightPoint point = source.sampled_light()
-                                      ? light::light_point_of_world(context.scene, state.ray.ray.direction)
-                                      : light::LightPoint{};
-  return found_contribution(context, source, state, state.throughput, radiance, light_pdf(context, source, point));
+  return distant_contribution(context, source, state, world_radiance(context, state.ray, state.depth));
+}
+
+Contribution film_background_contribution(const PathContext& context, const RaySource& source, const PathState& state) {
+  return distant_contribution(context, source, state, film_background_radiance(context, state.ray, state.depth));
 }
 
 Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state,

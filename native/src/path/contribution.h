@@ -28,6 +28,8 @@ void apply_segment(const Segment& segment, PathState* state);
 Contribution light_hit_contribution(const PathContext& context, const RaySource& source, const PathState& state,
                                     const LightCrossing& crossing);
 Contribution world_contribution(const PathContext& context, const RaySource& source, const PathState& state);
+// Returns the contribution that the world would have where a transparent film hides it. It belongs to no component.
+Contribution film_background_contribution(const PathContext& context, const RaySource& source, const PathState& state);
 Contribution emission_contribution(const PathContext& context, const RaySource& source, const PathState& state,
                                    const Vertex& vertex);
 

@@ -143,8 +143,11 @@ Rgb light_hit_radiance(const light::LightEvaluation& view, const PathRay& ray, i
 }
 
 Rgb world_radiance(const PathContext& context, const PathRay& ray, int depth) {
-  const bool hidden = (context.settings.film_transparent != 0 && shows_background(ray.state)) ||
-                      (depth == 0 && context.settings.use_sky == 0);
+  return meets_film_background(context, ray.state) ? Rgb(0.0f) : film_background_radiance(context, ray, depth);
+}
+
+Rgb film_background_radiance(const PathContext& context, const PathRay& ray, int depth) {
+  const bool hidden = depth == 0 && context.settings.use_sky == 0;
   if (hidden || (context.scene.world.visibility & ray.visibility) == 0) {
     return Rgb(0.0f);
   }

@@ -68,9 +68,15 @@ inline float hidden_share(float pdf_light, float pdf_bsdf) {
   const float ratio = pdf_bsdf / pdf_light;
   return pdf_light > 0.0f ? 1.0f / (1.0f + ratio * ratio) : 0.0f;
 }
+// Returns whether a ray that leaves the scene shows a transparent film's background in the place of the world.
+inline bool meets_film_background(const PathContext& context, const shading::RayState& ray) {
+  return context.settings.film_transparent != 0 && shows_background(ray);
+}
 // Return the radiance of an analytic light that a ray crosses, and of the world, towards this kind of ray. It is black
 // if it is hidden from that kind.
 Rgb light_hit_radiance(const light::LightEvaluation& view, const PathRay& ray, int depth);
 Rgb world_radiance(const PathContext& context, const PathRay& ray, int depth);
+// Returns the radiance of the world also where a transparent film hides it. The Environment pass shows it there, too.
+Rgb film_background_radiance(const PathContext& context, const PathRay& ray, int depth);
 
 }  // namespace gradus::path

@@ -48,7 +48,10 @@ Vec3 uv_of(const geometry::InstanceData& instance, const geometry::Hit& hit) {
 // Returns 1 / depth, bounded for a depth of 0.
 float inverse_depth(float depth) { return 1.0f / std::max(depth, 1e-10f); }
 
-// Passes that show one surface of a pixel, whatever the weight of its light.
+// Passes that show one surface of a pixel, whatever the weight of its light: those of which a pixel keeps the first
+// sample, and all.
+constexpr std::array<uint32_t, 4> kFirstSurfaceData = {GRADUS_PASS_DEPTH, GRADUS_PASS_POSITION,
+                                                       GRADUS_PASS_OBJECT_INDEX, GRADUS_PASS_MATERIAL_INDEX};
 constexpr std::array<uint32_t, 7> kSurfaceData = {
     GRADUS_PASS_DEPTH,  GRADUS_PASS_POSITION, GRADUS_PASS_OBJECT_INDEX, GRADUS_PASS_MATERIAL_INDEX,
     GRADUS_PASS_NORMAL, GRADUS_PASS_UV,       GRADUS_PASS_VECTOR};
@@ -77,10 +80,10 @@ PassRecorder::PassRecorder(const PathContext& context, film::Film* film, film::C
     has_light_passes_ |= plane.pass >= GRADUS_PASS_EMISSION && plane.pass <= GRADUS_PASS_TRANSMISSION_COLOR;
     const bool is_feature = schema::pass_info(plane.pass).kind == schema::PassKind::Feature;
     has_features_ |= is_feature;
-    has_data_ |= !is_feature;
     has_surface_data_ |= std::ranges::find(kSurfaceData, plane.pass) != kSurfaceData.end();
   }
-  visits_surfaces_ = has_surface_data_ || channels_.visits_surfaces();
+  visits_surfaces_ = has_surface_data_ || channels_.visits_surfaces() || plane(GRADUS_PASS_MIST) != nullptr ||
+                     plane(GRADUS_PASS_AMBIENT_OCCLUSION) != nullptr;
   records_non_specular_ = !film->components[0].non_specular[0].empty();
   records_details_ = !film->components[0].details.empty();
   if (records_non_specular_ || records_details_) {
@@ -103,11 +106,12 @@ void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool ad
   albedo_ = Rgb(0.0f);
   channels_.begin_sample(pixel, half);
   catchers_.begin_sample(pixel, half, adds_components);
+  if (!adds_components) add(GRADUS_PASS_MIST, 1.0f);
 }
 
 void PassRecorder::hole(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment) {
   if (!catchers_.catches(vertex)) return;
-  surface(sampler, state, vertex, segment);
+  surface(state, vertex, segment);
   catchers_.catcher(sampler, state, vertex);
 }
 
@@ -147,6 +151,11 @@ void PassRecorder::environment(int scatterings, const Rgb& value) {
   add_light(scatterings, value, share_, GRADUS_PASS_ENVIRONMENT);
 }
 
+void PassRecorder::film_background(const Rgb& throughput, const Rgb& light, const Rgb& value) {
+  if (!features_done_) add_albedo(throughput * light);
+  environment(0, value);
+}
+
 void PassRecorder::light(const PathState& state, const Vertex& vertex, bsdf::ScatterClass c, const LightSample& light,
                          const Rgb& value) {
   if (channels_.has_groups()) channels_.light(light::light_group_of(context_.scene, light.point), value);
@@ -179,11 +188,10 @@ void PassRecorder::scattered(int depth, const Vertex& vertex, const ScatterEvent
   share_ = share_of(passes);
 }
 
-void PassRecorder::surface(const Sampler& sampler, const PathState& state, const Vertex& vertex,
-                           const Segment& segment) {
+void PassRecorder::surface(const PathState& state, const Vertex& vertex, const Segment& segment) {
   path_length_ += segment.length;
-  if (state.depth == 0 && has_data_ && !adds_components_) {
-    camera_surface(sampler, state, vertex);
+  if (has_light_passes_ && records_data(state) && shows_data(context_, vertex, state.ray.state)) {
+    colors(state.throughput, vertex);
   }
   if (!features_done_) {
     features(state, vertex);
@@ -195,30 +203,37 @@ void PassRecorder::surface(const Sampler& sampler, const PathState& state, const
 }
 
 void PassRecorder::escaped(const PathState& state) {
-  if (state.depth > 0 || adds_components_) {
+  if (!state.shows_background() || adds_components_) {
     return;
   }
   channels_.escaped(state.ray);
-  add(GRADUS_PASS_MIST, 1.0f);
+  if (surface_data_done_) {
+    return;
+  }
+  for (const uint32_t pass : kFirstSurfaceData) add(pass, Vec4(0.0f));
   if (plane(GRADUS_PASS_VECTOR) != nullptr) {
     background_motion(state.ray.ray.direction);
   }
 }
 
-void PassRecorder::camera_surface(const Sampler& sampler, const PathState& state, const Vertex& vertex) {
-  const Rgb& weight = state.throughput;
-  colors(weight, vertex);
-  // The weight is divided by the probability that the path does not pass the surface, as closures require.
-  const Rgb opaque = weight * vertex.shade.opacity();
-  if (plane(GRADUS_PASS_AMBIENT_OCCLUSION) != nullptr) {
-    ambient_occlusion(sampler, opaque, vertex, state.ray.state.transparent_depth);
-  }
-  mist(opaque, vertex.point.position, vertex.point.hit.time);
+SurfaceVisitor* PassRecorder::follow(const PathState& state) {
+  if (!visits_surfaces_ || !records_data(state)) return nullptr;
+  throughput_ = state.throughput;
+  is_camera_segment_ = state.depth == 0;
+  return this;
 }
 
-void PassRecorder::visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) {
+void PassRecorder::visit(const Sampler& sampler, const Vertex& vertex, const shading::RayState& ray,
+                         const Rgb& weight) {
+  const Rgb arriving = throughput_ * weight;
+  channels_.visit(vertex, ray, arriving);
+  if (!shows_data(context_, vertex, ray)) return;
   if (has_surface_data_ && !surface_data_done_) surface_data(vertex);
-  channels_.visit(vertex, ray, weight);
+  const Rgb opaque = arriving * vertex.shade.opacity();
+  if (is_camera_segment_ && plane(GRADUS_PASS_AMBIENT_OCCLUSION) != nullptr) {
+    ambient_occlusion(sampler, opaque, vertex, ray.transparent_depth);
+  }
+  mist(opaque, vertex.point.position, vertex.point.hit.time);
 }
 
 void PassRecorder::surface_data(const Vertex& vertex) {
@@ -250,7 +265,8 @@ void PassRecorder::colors(const Rgb& weight, const Vertex& vertex) {
 
 void PassRecorder::ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex,
                                      uint32_t crossed) {
-  const Vec2 u = sampler.get2(dimension::kFirstVertex + dimension::kOcclusion);
+  // Surfaces on a segment take the blocks of later vertices, which record no occlusion, so that their noise differs.
+  const Vec2 u = sampler.get2(dimension::kFirstVertex + crossed * dimension::kPerVertex + dimension::kOcclusion);
   const Vec3 n = shown_normal(vertex);
   const Vec3 t = glm::normalize(std::fabs(n.x) > 0.5f ? glm::cross(n, Vec3(0, 1, 0)) : glm::cross(n, Vec3(1, 0, 0)));
   const float radius = std::sqrt(u.x);
@@ -281,7 +297,7 @@ void PassRecorder::mist(const Rgb& weight, const Vec3& position, float time) {
   } else if (world.mist_falloff == GRADUS_MIST_INVERSE_QUADRATIC) {
     value = std::sqrt(value);
   }
-  add(GRADUS_PASS_MIST, 1.0f - mean_component(weight) * (1.0f - value));
+  add(GRADUS_PASS_MIST, mean_component(weight) * (value - 1.0f));
 }
 
 template <class Project>

@@ -22,26 +22,23 @@ class PassRecorder final : public SurfaceVisitor {
 
   // Prepares for a sample. If `adds_components` is true, everything except light was recorded before.
   void begin_sample(size_t pixel, int half, uint32_t number, bool adds_components = false);
-  // Returns whether surface() needs the closures of the vertex with `depth` scattering events before it.
-  bool needs_closures(int depth) const {
-    return (depth == 0 && !adds_components_) || !features_done_ || seeks_non_specular_;
+  // Returns whether surface() and visit() need the closures of the next vertex of a path.
+  bool needs_closures(const PathState& state) const {
+    return records_data(state) || !features_done_ || seeks_non_specular_;
   }
   // Records a vertex at which the path stops, before it scatters. The state's throughput has the weight of the segment.
-  void surface(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
+  void surface(const PathState& state, const Vertex& vertex, const Segment& segment);
   // Records a surface that cuts a hole into the film. The state's throughput has the weight of the segment.
   void hole(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment);
   // Records a ray that leaves the scene.
   void escaped(const PathState& state);
-  // Returns what must see the surfaces on a camera segment, or null if nothing must.
-  SurfaceVisitor* surface_visitor() { return visits_surfaces_ && !adds_components_ ? this : nullptr; }
-  // Records a surface on a camera segment, whether the path stops there or passes it. As in Cycles, data passes show
-  // the first surface that is opaque enough. Those of one sample are replaced by each surface up to that one, so that
-  // they show a clearer surface where the path stops there.
-  void visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) override;
-  // Records a film position without a camera ray, where mist is 1, as in Cycles.
-  void no_ray() {
-    if (!adds_components_) add(GRADUS_PASS_MIST, 1.0f);
-  }
+  // Prepares for the next segment of a path. Returns what must see the surfaces on it, or null if nothing must.
+  SurfaceVisitor* follow(const PathState& state);
+  // Records a surface that the camera sees directly or through clear glass, whether the path stops there or passes it.
+  // As in Cycles, data passes show the first surface that is opaque enough. Those of one sample are replaced by each
+  // surface up to that one, so that they show a clearer surface where the path stops there. Mist and ambient occlusion
+  // are sums over all surfaces.
+  void visit(const Sampler& sampler, const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) override;
   // Records an analytic light or the world on the last segment, at `distance` from its start. `light` is the radiance
   // before any weight.
   void record_light(const Rgb& throughput, int component, const Rgb& light, float distance) {
@@ -53,8 +50,12 @@ class PassRecorder final : public SurfaceVisitor {
   // Records radiance that a ray has found, before any weight, as a feature of its component. It stands for the albedo
   // of what a mirror or glass shows. `further` is its distance from the end of the path so far.
   void record_emission(int component, const Rgb& light, float further = 0.0f);
+  // Returns whether film_background() records anything.
+  bool records_film_background() const { return plane(GRADUS_PASS_ENVIRONMENT) != nullptr; }
+  // Records the world where a transparent film hides it: its radiance, and what it would contribute.
+  void film_background(const Rgb& throughput, const Rgb& light, const Rgb& value);
   // Record the contribution of an analytic light, a surface or the world after a number of scattering events, 0 if the
-  // camera sees it.
+  // camera sees it, also through clear glass (PathContext::glass_limit).
   void emission(int scatterings, const light::LightPoint& point, const Rgb& value);
   void emission(int scatterings, const Vertex& vertex, const Rgb& value);
   void environment(int scatterings, const Rgb& value);
@@ -66,14 +67,18 @@ class PassRecorder final : public SurfaceVisitor {
 
  private:
   film::Channel* plane(uint32_t pass) const { return planes_[pass]; }
+  // Returns whether passes of data show what the path meets next: what shows the film's background, as in Cycles.
+  bool records_data(const PathState& state) const {
+    return state.shows_background() && !state.emission_only && !adds_components_;
+  }
   void add(uint32_t pass, const Vec4& value);
   void add(uint32_t pass, const Vec3& value) { add(pass, Vec4(value, 0.0f)); }
   void add(uint32_t pass, float value) { add(pass, Vec4(value, 0.0f, 0.0f, 0.0f)); }
   void add_light(int scatterings, const Rgb& value, const PassShare& share, uint32_t direct_pass);
-  void camera_surface(const Sampler& sampler, const PathState& state, const Vertex& vertex);
   void surface_data(const Vertex& vertex);
   void colors(const Rgb& weight, const Vertex& vertex);
   void ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex, uint32_t crossed);
+  // Subtracts from mist, which is 1 without surfaces, what a surface hides of it.
   void mist(const Rgb& weight, const Vec3& position, float time);
   // Adds the motion vector of a point. project(moment, film) returns its film position, or false if it has none.
   template <class Project>
@@ -96,7 +101,6 @@ class PassRecorder final : public SurfaceVisitor {
   bool active_ = false;
   bool has_light_passes_ = false;
   bool has_features_ = false;
-  bool has_data_ = false;          // the film has planes that are not features
   bool has_surface_data_ = false;  // the film has planes of surface_data()
   bool visits_surfaces_ = false;
   // Components that record the first non-specular vertex, or details of it; null if there are none.
@@ -118,7 +122,9 @@ class PassRecorder final : public SurfaceVisitor {
   Rgb albedo_ = Rgb(0.0f);  // denoising albedo of this sample so far
   size_t pixel_ = 0;
   int half_ = 0;
-  PassShare share_{};  // shares of the light passes in all light behind the first vertex
+  Rgb throughput_ = Rgb(1.0f);      // of the path up to the segment that visit() sees
+  bool is_camera_segment_ = false;  // visit() sees the first segment
+  PassShare share_{};               // shares of the light passes in all light behind the first vertex
 };
 
 }  // namespace gradus::path

@@ -223,7 +223,7 @@ void trace_segment(const PathContext& context, const Sampler& sampler, int depth
     context.scene.place(hit, &vertex->point);
     const auto shade = shading == Shading::Now ? shading::shade_surface : shading::shade_without_closures;
     shade(context.scene, vertex->point, vertex->wo, ray->state, context.settings.roughness_threshold, &vertex->shade);
-    if (visitor != nullptr) visitor->visit(*vertex, ray->state, segment->weight);
+    if (visitor != nullptr) visitor->visit(sampler, *vertex, ray->state, segment->weight);
     const Passage passage = decide(sampler, depth, *vertex, segment);
     if (passage == Passage::Stops) {
       segment->end = SegmentEnd::Surface;

@@ -70,8 +70,9 @@ inline PathRay camera_path_ray(const PathContext& context, const Ray& ray) {
 // Sees the surfaces on a segment.
 class SurfaceVisitor {
  public:
-  // `weight` is that of the segment up to the surface; the closures of the vertex may be missing.
-  virtual void visit(const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) = 0;
+  // `sampler` is that of the path, and `weight` that of the segment up to the surface; the closures of the vertex may
+  // be missing.
+  virtual void visit(const Sampler& sampler, const Vertex& vertex, const shading::RayState& ray, const Rgb& weight) = 0;
 
  protected:
   ~SurfaceVisitor() = default;

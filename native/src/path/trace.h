@@ -152,14 +152,14 @@ class PathTracer {
       state_.ray = known->ray;
       state_.ray.state.random = sampler.key();
       if (records_closures()) shade_vertex(context_, state_.ray.state, vertex);
-      if (visitor() != nullptr && segment_->end == SegmentEnd::Surface)
-        visitor()->visit(*vertex, state_.ray.state, segment_->weight);
+      SurfaceVisitor* const visiting = visitor();
+      if (visiting != nullptr && segment_->end == SegmentEnd::Surface)
+        visiting->visit(sampler, *vertex, state_.ray.state, segment_->weight);
     } else {
       state_.ray = camera_path_ray(context_, context_.camera.ray(sample));
       state_.ray.state.random = sampler.key();
       trace_to_vertex(sampler, known != nullptr ? &known->hit : nullptr, vertex);
     }
-    if (recorder_ != nullptr && is_none(state_.ray.ray)) recorder_->no_ray();
     return vertex;
   }
 
@@ -187,12 +187,10 @@ class PathTracer {
 
   // Returns whether the next segment is the last one and only lights and the world can be seen on it.
   bool needs_lights_only() const { return !records_closures() && shows_only_lights(context_, state_); }
-  // Returns what sees the surfaces on a camera segment, or null.
-  SurfaceVisitor* visitor() const {
-    return recorder_ != nullptr && state_.depth == 0 ? recorder_->surface_visitor() : nullptr;
-  }
+  // Returns what sees the surfaces on the next segment, or null.
+  SurfaceVisitor* visitor() const { return recorder_ != nullptr ? recorder_->follow(state_) : nullptr; }
   // Returns whether the recorder needs the closures of the next vertex.
-  bool records_closures() const { return recorder_ != nullptr && recorder_->needs_closures(state_.depth); }
+  bool records_closures() const { return recorder_ != nullptr && recorder_->needs_closures(state_); }
 
   // ---- Emission that the path finds ----
 
@@ -222,7 +220,7 @@ class PathTracer {
         recorder_->record_light(state_.throughput * crossing.weight, c.component, c.light, crossing.distance);
       if (!is_black(c.clamped)) {
         add(c);
-        if (records(c)) recorder_->emission(state_.depth, crossing.point, c.clamped);
+        if (records(c)) recorder_->emission(pass_depth(), crossing.point, c.clamped);
         observer_.on_light_crossing(source, c, crossing);
       }
     }
@@ -230,15 +228,23 @@ class PathTracer {
 
   void add_world(const RaySource& source) {
     if (recorder_ != nullptr) recorder_->escaped(state_);
-    if (state_.shows_background() && context_.settings.film_transparent != 0)
-      add_transparency(mean_component(state_.throughput));
+    if (meets_film_background(context_, state_.ray.state)) return add_film_background(source);
     const Contribution c = world_contribution(context_, source, state_);
     if (recorder_ != nullptr) recorder_->record_light(state_.throughput, c.component, c.light, kInfinity);
     if (!is_black(c.clamped)) {
       add(c);
-      if (records(c)) recorder_->environment(state_.depth, c.clamped);
+      if (records(c)) recorder_->environment(pass_depth(), c.clamped);
       observer_.on_world(source, c);
     }
+  }
+
+  // Lets the film's background show. As in Cycles, the world behind it lights passes alone, if one of them is
+  // Environment.
+  void add_film_background(const RaySource& source) {
+    add_transparency(mean_component(state_.throughput));
+    if (recorder_ == nullptr || !recorder_->records_film_background()) return;
+    const Contribution c = film_background_contribution(context_, source, state_);
+    if (records(c)) recorder_->film_background(state_.throughput, c.light, c.clamped);
   }
 
   // Returns whether the path can scatter at the surface. It cannot where the surface cuts a hole into the film. What a
@@ -252,12 +258,12 @@ class PathTracer {
       }
       add_transparency(holdout_alpha(state_.throughput, vertex.shade.holdout));
     }
-    if (recorder_ != nullptr) recorder_->surface(sampler, state_, vertex, *segment_);
+    if (recorder_ != nullptr) recorder_->surface(state_, vertex, *segment_);
     const Contribution c = emission_contribution(context_, source, state_, vertex);
     if (recorder_ != nullptr) recorder_->record_emission(c.component, c.light);
     if (!is_black(c.clamped)) {
       add(c);
-      if (records(c)) recorder_->emission(state_.depth, vertex, c.clamped);
+      if (records(c)) recorder_->emission(pass_depth(), vertex, c.clamped);
       observer_.on_emission(source, c, vertex);
     }
     return true;
@@ -353,6 +359,10 @@ class PathTracer {
       observer_.on_transparency(value);
     }
   }
+
+  // Returns the number of scattering events by which light passes sort what the path finds. As in Cycles, what clear
+  // glass shows is seen directly.
+  int pass_depth() const { return state_.shows_background() ? 0 : state_.depth; }
 
   // Returns whether the contribution goes to light passes, too.
   bool records(const Contribution& c) const { return recorder_ != nullptr && (wanted_ >> c.component & 1) != 0; }

@@ -13,7 +13,7 @@ constexpr PassInfo kPasses[] = {
     {GRADUS_PASS_DEPTH, "Depth", "Z", PassKind::First, GRADUS_PASS_COUNT},
     {GRADUS_PASS_MIST, "Mist", "Z", PassKind::Average, GRADUS_PASS_COUNT},
     {GRADUS_PASS_NORMAL, "Normal", "XYZ", PassKind::Average, GRADUS_PASS_COUNT},
-    {GRADUS_PASS_POSITION, "Position", "XYZ", PassKind::Average, GRADUS_PASS_COUNT},
+    {GRADUS_PASS_POSITION, "Position", "XYZ", PassKind::First, GRADUS_PASS_COUNT},
     {GRADUS_PASS_UV, "UV", "UVA", PassKind::Average, GRADUS_PASS_COUNT},
     {GRADUS_PASS_VECTOR, "Vector", "XYZW", PassKind::Weighted, GRADUS_PASS_COUNT},
     {GRADUS_PASS_OBJECT_INDEX, "Object Index", "X", PassKind::First, GRADUS_PASS_COUNT},

@@ -1,7 +1,9 @@
 #include "shading/closure_ops.h"
 
 #include "bsdf/fresnel.h"
+#include "bsdf/shading_normal.h"
 #include "shading/context_ops.h"
+#include "shading/material.h"
 #include "shading/rotation.h"
 #include "shading/scalar.h"
 
@@ -50,7 +52,7 @@ Rgb non_negative(const Vec3& c) { return glm::max(c, Vec3(0.0f)); }
 void add_diffuse(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   const Rgb color = non_negative(args.v(0));
   bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Diffuse, bsdf::LightPass::Diffuse, args.weight * color,
-                              outward_normal(c, args.v(2)));
+                              diffuse_normal(c, args.v(2)));
   if (!lobe) return;
   lobe->alpha_x = saturate(args.f(1));
   lobe->multiscatter = args.mode == 1;
@@ -59,7 +61,7 @@ void add_diffuse(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
 
 void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   if (!reflects(c)) return;
-  const Vec3 normal = facing_normal(c, args.v(4));
+  const Vec3 normal = reflecting_normal(c, args.v(4));
   bsdf::Lobe* lobe =
       add_lobe(result, reflection_type(args), bsdf::LightPass::Glossy, args.weight * non_negative(args.v(0)), normal);
   if (!lobe) return;
@@ -73,7 +75,7 @@ void add_glossy(const ClosureArgs& args, const ShadeContext& c, ShadeResult* res
 
 void add_metallic(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   if (!reflects(c)) return;
-  const Vec3 normal = facing_normal(c, args.v(5));
+  const Vec3 normal = reflecting_normal(c, args.v(5));
   bsdf::Lobe* lobe = add_lobe(result, reflection_type(args), bsdf::LightPass::Glossy, args.weight, normal);
   if (!lobe) return;
   set_principled_roughness(lobe, args.f(2), args.f(3));
@@ -94,8 +96,9 @@ void add_metallic(const ClosureArgs& args, const ShadeContext& c, ShadeResult* r
 
 void add_refraction(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   if (!refracts(c)) return;
-  bsdf::Lobe* lobe = add_lobe(result, refraction_type(args), bsdf::LightPass::Transmission,
-                              args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
+  bsdf::Lobe* lobe =
+      add_lobe(result, refraction_type(args), bsdf::LightPass::Transmission, args.weight * non_negative(args.v(0)),
+               pointing_outward(c, reflecting_normal(c, args.v(3))));
   if (!lobe) return;
   const float roughness = saturate(args.f(1));
   lobe->alpha_x = lobe->alpha_y = roughness * roughness;
@@ -106,7 +109,7 @@ void add_refraction(const ClosureArgs& args, const ShadeContext& c, ShadeResult*
 // Adds the glass of Blender before 4.0, where the Fresnel term of the shading normal, not of the microfacets, weights
 // reflection and refraction.
 void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
-  const Vec3 normal = facing_normal(c, args.v(3));
+  const Vec3 normal = reflecting_normal(c, args.v(3));
   const Rgb weight = args.weight * non_negative(args.v(0));
   const float ior = std::max(args.f(2), 1e-5f), roughness = saturate(args.f(1));
   const float reflected = dielectric_reflectance(glm::dot(c.wo, normal), c.backfacing ? 1.0f / ior : ior);
@@ -117,7 +120,7 @@ void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResul
     lobe->separable_masking = true;
   }
   if (bsdf::Lobe* lobe = add_lobe(result, refraction_type(args), bsdf::LightPass::Transmission, refraction,
-                                  c.backfacing ? -normal : normal)) {
+                                  pointing_outward(c, normal))) {
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;
     lobe->separable_masking = true;
     lobe->ior = ior;
@@ -127,8 +130,9 @@ void add_legacy_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResul
 void add_glass(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   if ((args.mode & kLegacy) && !is_multiscatter(args) && args.f(1) > 0.0f) return add_legacy_glass(args, c, result);
   if (!reflects(c) && !refracts(c)) return;
-  bsdf::Lobe* lobe = add_lobe(result, glass_type(args), bsdf::LightPass::Transmission,
-                              args.weight * non_negative(args.v(0)), outward_normal(c, args.v(3)));
+  bsdf::Lobe* lobe =
+      add_lobe(result, glass_type(args), bsdf::LightPass::Transmission, args.weight * non_negative(args.v(0)),
+               pointing_outward(c, reflecting_normal(c, args.v(3))));
   if (!lobe) return;
   const float roughness = saturate(args.f(1));
   lobe->alpha_x = lobe->alpha_y = roughness * roughness;
@@ -151,13 +155,13 @@ void add_subsurface_node(const ClosureArgs& args, const ShadeContext& c, ShadeRe
   s.ior = args.f(3);
   s.alpha = saturate(args.f(4));
   s.anisotropy = args.f(5);
-  s.normal = facing_normal(c, args.v(6));
+  s.normal = reflecting_normal(c, args.v(6));
   add_subsurface(s, result, c);
 }
 
 void add_velvet(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Velvet, bsdf::LightPass::Glossy,
-                              args.weight * non_negative(args.v(0)), facing_normal(c, args.v(2)));
+                              args.weight * non_negative(args.v(0)), diffuse_normal(c, args.v(2)));
   if (lobe) lobe->alpha_x = std::clamp(args.f(1), 0.01f, 1.0f);
 }
 
@@ -176,7 +180,7 @@ void add_portal(const ClosureArgs& args, const ShadeContext& c, ShadeResult* res
 void add_sheen(const ClosureArgs& args, const ShadeContext& c, ShadeResult* result) {
   if (args.mode == 1) return add_velvet(args, c, result);
   bsdf::Lobe* lobe = add_lobe(result, bsdf::LobeType::Sheen, bsdf::LightPass::Diffuse,
-                              args.weight * non_negative(args.v(0)), facing_normal(c, args.v(2)));
+                              args.weight * non_negative(args.v(0)), diffuse_normal(c, args.v(2)));
   if (lobe) lobe->alpha_x = saturate(args.f(1));
 }
 
@@ -185,7 +189,7 @@ void add_toon(const ClosureArgs& args, const ShadeContext& c, ShadeResult* resul
   if (glossy && !reflects(c)) return;
   bsdf::Lobe* lobe = add_lobe(result, glossy ? bsdf::LobeType::GlossyToon : bsdf::LobeType::DiffuseToon,
                               glossy ? bsdf::LightPass::Glossy : bsdf::LightPass::Diffuse,
-                              args.weight * non_negative(args.v(0)), facing_normal(c, args.v(3)));
+                              args.weight * non_negative(args.v(0)), diffuse_normal(c, args.v(3)));
   if (!lobe) return;
   lobe->alpha_x = std::clamp(args.f(1), 1e-5f, 1.0f) * (0.5f * kPi);
   lobe->alpha_y = saturate(args.f(2)) * (0.5f * kPi);
@@ -227,14 +231,24 @@ void leave_caustics_out(const ShadeContext& c, bsdf::Lobe* glass) {
   if (!refracts(c)) glass->transmission_tint = Rgb(0.0f);
 }
 
-Vec3 facing_normal(const ShadeContext& c, const Vec3& normal) {
+Vec3 input_normal(const ShadeContext& c, const Vec3& normal) {
   const Vec3 n = safe_normalize(normal);
-  return n == Vec3(0.0f) ? c.normal : geometry::keep_above(n, c.geometric_normal);
+  return n == Vec3(0.0f) ? c.normal : n;
 }
 
-Vec3 outward_normal(const ShadeContext& c, const Vec3& normal) {
-  const Vec3 n = facing_normal(c, normal);
-  return c.backfacing ? -n : n;
+Vec3 reflecting_normal(const ShadeContext& c, const Vec3& normal) {
+  const Vec3 n = input_normal(c, normal);
+  if (glm::dot(n, c.geometric_normal) >= 0.0f) return n;
+  const Vec3 tilted = bsdf::keep_reflection_above(n, c.geometric_normal, c.wo);
+  return glm::dot(tilted, c.geometric_normal) < 0.0f ? Vec3(0.0f) : tilted;
+}
+
+Vec3 diffuse_normal(const ShadeContext& c, const Vec3& normal) {
+  const bool tilts = c.scene != nullptr && c.material < c.scene->materials.size() &&
+                     c.scene->materials[c.material]->shading_normals == GRADUS_SHADING_NORMALS_BEFORE_3_6;
+  if (tilts) return reflecting_normal(c, normal);
+  const Vec3 n = input_normal(c, normal);
+  return glm::dot(n, c.geometric_normal) < 0.0f ? Vec3(0.0f) : n;
 }
 
 Vec3 turned_tangent(const ShadeContext& c, const Vec3& tangent, const Vec3& normal, float turns) {
@@ -288,6 +302,7 @@ bsdf::Lobe* add_lobe(ShadeResult* result, bsdf::LobeType type, bsdf::LightPass p
     result->is_faulty = result->is_faulty || !is_finite(weight);
     return nullptr;
   }
+  if (normal == Vec3(0.0f)) return nullptr;
   bsdf::Lobe* lobe = result->closures.add();
   lobe->type = type;
   lobe->pass = pass;
@@ -308,7 +323,7 @@ void add_closure(const ClosureArgs& args, const ShadeContext& c, ShadeResult* re
       return add_diffuse(args, c, result);
     case GRADUS_OP_TRANSLUCENT:
       add_lobe(result, bsdf::LobeType::Translucent, bsdf::LightPass::Diffuse, args.weight * non_negative(args.v(0)),
-               outward_normal(c, args.v(1)));
+               pointing_outward(c, reflecting_normal(c, args.v(1))));
       return;
     case GRADUS_OP_GLOSSY:
       return add_glossy(args, c, result);

@@ -49,11 +49,18 @@ void add_principled_3(const ClosureArgs& args, const ShadeContext& context, Shad
 // Closures with a smaller weight are omitted, as in Cycles.
 inline constexpr float kWeightCutoff = 1e-5f;
 
-// Returns the unit normal of an input, moved to the viewer's side if needed. A zero input stands for the surface's own
-// normal.
-Vec3 facing_normal(const ShadeContext& context, const Vec3& normal);
-// Returns facing_normal() pointing out of the object, as lobes with two sides need it.
-Vec3 outward_normal(const ShadeContext& context, const Vec3& normal);
+// Returns the unit normal of an input. A zero input stands for the surface's own normal.
+Vec3 input_normal(const ShadeContext& context, const Vec3& normal);
+// Return the normal of a diffuse lobe, and of a lobe that reflects, refracts or lets light in. Where the input points
+// below the surface, a diffuse lobe reflects nothing to the viewer's side, and another one takes the nearest normal
+// whose mirror direction is above the surface, as in Cycles. The normal is 0 where a lobe scatters nothing: where it is
+// below the surface and mirrors the viewer above it. Before Blender 3.6 diffuse lobes were treated like the others.
+Vec3 diffuse_normal(const ShadeContext& context, const Vec3& normal);
+Vec3 reflecting_normal(const ShadeContext& context, const Vec3& normal);
+// Returns a normal on the viewer's side pointing out of the object, as lobes with two sides need it.
+inline Vec3 pointing_outward(const ShadeContext& context, const Vec3& normal) {
+  return context.backfacing ? -normal : normal;
+}
 // Puts a thin film with a thickness in nanometres on a microfacet lobe. Its Fresnel term, which is complete, becomes
 // that of the film on it. Films that are too thin to be seen are left out.
 void add_film(bsdf::Lobe* lobe, float thickness, float ior, bool fitted);

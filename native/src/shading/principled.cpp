@@ -62,7 +62,7 @@ class Layers {
         c_(context),
         result_(result),
         weight_(args.weight),
-        normal_(facing_normal(context, args.v(kNormal))) {}
+        normal_(reflecting_normal(context, args.v(kNormal))) {}
 
   void add() {
     sheen();
@@ -85,7 +85,7 @@ class Layers {
     bsdf::Lobe* lobe = args_.mode & kEmissionOnly ? &spare_.emplace() : result_->closures.add();
     lobe->type = type;
     lobe->pass = pass;
-    lobe->weight = weight;
+    lobe->weight = normal == Vec3(0.0f) ? Rgb(0.0f) : weight;
     lobe->normal = normal;
     return lobe;
   }
@@ -97,9 +97,8 @@ class Layers {
     const float amount = std::max(args_.f(kSheenWeight), 0.0f);
     const Rgb tinted = weight_ * amount * glm::max(args_.v(kSheenTint), Vec3(0.0f));
     if (!(max_component(tinted) > kWeightCutoff)) return;
-    const Vec3 coat_normal = facing_normal(c_, args_.v(kCoatNormal));
-    const float coated = saturate(args_.f(kCoatWeight));
-    const Vec3 normal = facing_normal(c_, glm::mix(normal_, coat_normal, coated));
+    const Vec3 base_normal = input_normal(c_, args_.v(kNormal)), coat_normal = input_normal(c_, args_.v(kCoatNormal));
+    const Vec3 normal = diffuse_normal(c_, glm::mix(base_normal, coat_normal, saturate(args_.f(kCoatWeight))));
     bsdf::Lobe* lobe = new_layer(bsdf::LobeType::Sheen, bsdf::LightPass::Diffuse, tinted, normal);
     lobe->alpha_x = saturate(args_.f(kSheenRoughness));
     put_layer(lobe);
@@ -108,7 +107,7 @@ class Layers {
   void coat() {
     const float amount = std::max(args_.f(kCoatWeight), 0.0f);
     if (!(amount * max_component(weight_) > kWeightCutoff)) return;
-    const Vec3 normal = facing_normal(c_, args_.v(kCoatNormal));
+    const Vec3 normal = reflecting_normal(c_, args_.v(kCoatNormal));
     const float ior = std::max(args_.f(kCoatIor), 1.0f);
     if (reflects(c_)) {
       bsdf::Lobe* lobe = new_layer(bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_ * amount, normal);
@@ -147,7 +146,7 @@ class Layers {
 
   void glass() {
     const float transmission = saturate(args_.f(kTransmission));
-    const Vec3 outward = c_.backfacing ? -normal_ : normal_;
+    const Vec3 outward = pointing_outward(c_, normal_);
     const Rgb weight = reflects(c_) || refracts(c_) ? weight_ * transmission : Rgb(0.0f);
     if (bsdf::Lobe* lobe =
             add_lobe(result_, bsdf::LobeType::GgxGlass, bsdf::LightPass::Transmission, weight, outward)) {
@@ -210,8 +209,8 @@ class Layers {
 
   void diffuse() {
     const Rgb color = glm::max(args_.v(kBaseColor), Vec3(0.0f));
-    if (bsdf::Lobe* lobe =
-            add_lobe(result_, bsdf::LobeType::Diffuse, bsdf::LightPass::Diffuse, weight_ * color, normal_)) {
+    if (bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::Diffuse, bsdf::LightPass::Diffuse, weight_ * color,
+                                    diffuse_normal(c_, args_.v(kNormal)))) {
       lobe->alpha_x = saturate(args_.f(kDiffuseRoughness));
       lobe->multiscatter = true;
       lobe->f0 = color;
@@ -236,7 +235,7 @@ class Layers {
   ShadeResult* result_;
   std::optional<bsdf::Lobe> spare_;
   Rgb weight_;
-  Vec3 normal_;
+  Vec3 normal_;  // of all lobes that are not diffuse
 };
 
 }  // namespace

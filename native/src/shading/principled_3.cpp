@@ -36,7 +36,7 @@ class Lobes {
 
  public:
   Lobes(const ClosureArgs& args, const ShadeContext& context, ShadeResult* result)
-      : args_(args), c_(context), result_(result), normal_(facing_normal(context, args.v(kNormal))) {
+      : args_(args), c_(context), result_(result), normal_(reflecting_normal(context, args.v(kNormal))) {
     base_ = glm::max(args.v(kBaseColor), Vec3(0.0f));
     subsurface_ = args.f(kSubsurface);
     if (subsurface_ > kWeightCutoff && is_diffuse_below(args.mode, context.ray)) {
@@ -141,7 +141,7 @@ class Lobes {
       lobe->ior = ior;
       lobe->f0 = tinted(base_, saturate(args_.f(kSpecularTint)));
     }
-    const Vec3 outward = c_.backfacing ? -normal_ : normal_;
+    const Vec3 outward = pointing_outward(c_, normal_);
     if (bsdf::Lobe* lobe =
             add_lobe(result_, bsdf::LobeType::GgxRefraction, bsdf::LightPass::Transmission, refraction, outward)) {
       float refracted = roughness;
@@ -154,7 +154,7 @@ class Lobes {
   }
 
   void multiple_scattering_glass(float roughness) {
-    const Vec3 outward = c_.backfacing ? -normal_ : normal_;
+    const Vec3 outward = pointing_outward(c_, normal_);
     bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxGlass, bsdf::LightPass::Transmission,
                                 args_.weight * transmission_, outward);
     if (!lobe) return;
@@ -170,7 +170,7 @@ class Lobes {
     if (!reflects(c_)) return;
     const float amount = saturate(args_.f(kClearcoat));
     bsdf::Lobe* lobe = add_lobe(result_, bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy,
-                                args_.weight * (0.25f * amount), facing_normal(c_, args_.v(kClearcoatNormal)));
+                                args_.weight * (0.25f * amount), reflecting_normal(c_, args_.v(kClearcoatNormal)));
     if (!lobe) return;
     const float roughness = saturate(args_.f(kClearcoatRoughness));
     lobe->alpha_x = lobe->alpha_y = roughness * roughness;

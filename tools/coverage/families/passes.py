@@ -43,6 +43,8 @@ def rows() -> Iterator[Row]:
     yield from family.rows(rna.of_part("cycles", rna.changes(layer.cycles, ("name",))))
     yield family.row(".samples", take_samples)
     yield family.row(".material_override", override_material)
+    clear = Family(family.title, "View layer above a transparent film", stage_above_clear_film, NOISY)
+    yield clear.row(".use_pass_environment=on", show_environment)
     yield family.row(" second layer", add_layer)
     for kind in rna.enum_values(layer.aovs.add(), "type"):
         yield family.row(f" AOV {kind}", partial(add_aov, kind))
@@ -74,11 +76,21 @@ def stage_with_wall() -> Any:
     return layer
 
 
+def stage_above_clear_film() -> Any:
+    layer = stage()
+    bpy.data.objects["Floor"].hide_render = bpy.context.scene.render.film_transparent = True
+    return layer
+
+
 def change_with_color(change: rna.Change, color: str, layer: Any) -> None:
     """Switches a light pass on, and the pass of its colour if there is one."""
     change(layer)
     if hasattr(layer, color):
         setattr(layer, color, True)
+
+
+def show_environment(layer: Any) -> None:
+    layer.use_pass_environment = True
 
 
 def take_samples(layer: Any) -> None:
