@@ -202,6 +202,8 @@ class Job:
         self.warn(cycles_settings.warnings(self.scene, given, is_followed), changes_picture=False)
         chosen = self.current.settings
         self.warn(cycles_settings.clamp_warnings(self.depsgraph, chosen.clamp_direct), changes_picture=False)
+        limit = chosen.transparent_max_bounces
+        self.warn(cycles_settings.transparency_warnings(self.depsgraph, limit), changes_picture=False)
         is_clear = bool(chosen.film_transparent and chosen.film_transparent_glass)
         self.warn(cycles_settings.glass_warnings(self.layer, is_clear), changes_picture=False)
         self.warn_of_simulations()
