@@ -163,6 +163,8 @@ COORDINATES += [("NewGeometry", name) for name in ("Normal", "Position", "Parame
 def test_a9_coordinates_of_lights(
     kind: str, node: str, output: str, matrix: Matrix | None, stage: bpy.types.Scene, tmp_path: Path
 ) -> None:
+    if kind == "SUN" and output == "Parametric" and VERSION < (4, 0, 0):
+        pytest.skip("Cycles does not set it")
     stage.camera.data.type = "PERSP"
     light = add_light(kind, matrix, **({"size": 0.01} if kind == "AREA" else {}))
     stage.collection.objects.link(light)
@@ -217,7 +219,6 @@ def add_particles(scene: bpy.types.Scene, light: bpy.types.Object) -> None:
 
 def add_node_instances(scene: bpy.types.Scene, light: bpy.types.Object) -> None:
     scene.collection.objects.link(light)
-    bpy.ops.mesh.primitive_plane_add(size=2.0)
     tree = bpy.data.node_groups.new("Nodes", "GeometryNodeTree")
     if hasattr(tree, "interface"):
         tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
