@@ -29,13 +29,13 @@ IES = "\n".join(
         "0 30 60 90 180",
         "0 90 180 270 360",
         "900 700 300 100 50",
-        "500 200 900 400 60",
-        "100 800 200 600 90",
-        "700 100 500 200 80",
+        "900 200 900 400 60",
+        "900 800 200 600 90",
+        "900 100 500 200 80",
         "900 700 300 100 50",
     )
 )
-"""A profile that differs in all directions."""
+"""A profile that differs in all directions, but not along its axis."""
 
 SHEAR = Matrix(((1.0, 0.4, 0.0, 0.0), (0.0, 1.5, -0.3, 0.0), (0.2, 0.0, 0.8, 0.0), (0.0, 0.0, 0.0, 1.0)))
 """Scale and shear, as a scaled parent of a rotated light has it."""
