@@ -71,6 +71,9 @@ class LightFlags(IntFlag):
     SPOT_COSINE = 2
     DISK_FACING = 4
     NO_MIS = 8
+    ROUND_CONE = 16
+    WORLD_UV = 32
+    NO_OBJECT = 64
 
 
 class CameraType(IntEnum):
@@ -407,9 +410,14 @@ class Light(Struct):
         ("pass_index", c_int32),
         ("name", c_char_p),
         ("light_group", c_uint32),
-        ("reserved", c_uint32),
+        ("random_id", c_uint32),
         ("receiver_mask", c_uint64),
         ("blocker_mask", c_uint64),
+        ("color", c_float * 4),
+        ("generated", c_float * 3),
+        ("uv", c_float * 2),
+        ("attribute_count", c_uint32),
+        ("attributes", POINTER(c_float)),
     ]
 
 

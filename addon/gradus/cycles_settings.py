@@ -80,22 +80,56 @@ def warnings(scene: Any, given: set[str], is_followed: bool) -> list[str]:
 
 
 def clamp_warnings(depsgraph: Any, clamp_direct: float) -> list[str]:
-    """Returns a warning if direct light is clamped and Cycles chooses among several lights without its light tree.
+    """Returns a warning if direct light is clamped and Cycles chooses among several lights or triangles that emit.
 
-    A light that is chosen rarely adds more at once, so that a clamp cuts more of it. Cycles has a light tree since 3.5.
-    The world and surfaces that emit are lights, too; what is hidden from the render of the depsgraph is none.
+    What is chosen rarely adds more at once, so that a clamp cuts more of it. The light tree, which Cycles has since
+    3.5, chooses between lights and the world much as Gradus does. What is hidden from the render of the depsgraph does
+    not count.
     """
     scene = depsgraph.scene
     has_tree = getattr(getattr(scene, "cycles", None), "use_light_tree", False)
-    if clamp_direct <= 0.0 or has_tree:
+    if clamp_direct <= 0.0:
         return []
-    emitters = sum(obj.type == "LIGHT" or _emits(obj) for obj in depsgraph.objects) + (scene.world is not None)
-    if emitters < 2:
+    lights, surfaces = _counts(depsgraph)
+    has_world = scene.world is not None and not has_tree
+    if lights + has_world + 2 * surfaces < 2:
         return []
     return [
-        f"Clamp Direct is {clamp_direct:g}: without a light tree, Cycles chooses among lights in another way than "
-        "Gradus, so that it clamps other parts of their light"
+        f"Clamp Direct is {clamp_direct:g}: Cycles chooses among lights, and among the triangles of surfaces that emit "
+        "light, in another way than Gradus, so that it clamps other parts of it"
     ]
+
+
+_COMMON_LIMIT = 8  # of transparent surfaces, which is Blender's default
+
+
+def transparency_warnings(depsgraph: Any, transparent_max_bounces: int) -> list[str]:
+    """Returns a warning if paths may reach the limit of transparent surfaces by lights that they cross.
+
+    Cycles counts each light of some size that a ray of the camera or of a bounce crosses as such a surface, and ends
+    the path at the limit.
+    """
+    count = sum(_can_be_crossed(obj) for obj in depsgraph.objects if obj.type == "LIGHT")
+    if count == 0 or (count < transparent_max_bounces and transparent_max_bounces >= _COMMON_LIMIT):
+        return []
+    return [
+        f"Transparent Max Bounces is {transparent_max_bounces}: Cycles also counts the lights that a ray crosses, and "
+        "shows nothing behind the last one"
+    ]
+
+
+def _can_be_crossed(obj: Any) -> bool:
+    """Returns whether rays meet the light, because it has a size and the camera or bounces see it."""
+    light = obj.data
+    size = {"AREA": 1.0, "SUN": 0.0}.get(light.type, getattr(light, "shadow_soft_size", 0.0))
+    by_bounces = getattr(getattr(light, "cycles", None), "use_multiple_importance_sampling", True)
+    return size > 0.0 and (by_bounces or getattr(obj, "visible_camera", True))
+
+
+def _counts(depsgraph: Any) -> tuple[int, int]:
+    """Returns the numbers of lights and of surfaces that emit."""
+    lights = sum(obj.type == "LIGHT" for obj in depsgraph.objects)
+    return lights, sum(obj.type != "LIGHT" and _emits(obj) for obj in depsgraph.objects)
 
 
 def _emits(obj: Any) -> bool:

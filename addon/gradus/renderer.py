@@ -202,6 +202,8 @@ class Job:
         self.warn(cycles_settings.warnings(self.scene, given, is_followed), changes_picture=False)
         chosen = self.current.settings
         self.warn(cycles_settings.clamp_warnings(self.depsgraph, chosen.clamp_direct), changes_picture=False)
+        limit = chosen.transparent_max_bounces
+        self.warn(cycles_settings.transparency_warnings(self.depsgraph, limit), changes_picture=False)
         self.warn_of_simulations()
         image_settings = self.scene.render.image_settings
         self.warn(output.truncated_names(image_settings, self.layer.name, self.views, self.infos, compat.VERSION))

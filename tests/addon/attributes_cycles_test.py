@@ -436,6 +436,37 @@ def test_a9_instances_have_the_color_of_their_instancer(
     expect_cycles(stage, tmp_path)
 
 
+@pytest.mark.parametrize("kind", ["VERTS", "FACES"])
+def test_a9_generated_coordinates_of_instancers(kind: str, stage: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: they were twice as large, and 0 in collections."""
+    material = new_material()
+    graph = Graph(material)
+    place = graph("TexCoord", "Generated", from_instancer=True)
+    shifted = graph("VectorMath", "Vector", {"Vector": place, "Vector_001": (0.7, 0.8, 0.9)}, operation="ADD")
+    show(material, shifted)
+    unit = add_unit(material)
+    bpy.ops.mesh.primitive_plane_add(size=2.4, location=(-1.0, 0.0, 0.0))
+    instancer = bpy.context.object
+    unit.parent, unit.location = instancer, (0.0, 0.0, 0.0)
+    instancer.instance_type, instancer.show_instancer_for_render = kind, False
+    collection = bpy.data.collections.new("Instanced")
+    collection.objects.link(add_unit(material, 0.8))
+    empty = bpy.data.objects.new("Empty", None)
+    empty.location, empty.instance_type, empty.instance_collection = (-48.0, -50.0, 0.0), "COLLECTION", collection
+    stage.collection.objects.link(empty)
+    expect_cycles(stage, tmp_path)
+
+
+def test_a9_a_missing_colour_attribute_is_transparent(stage: bpy.types.Scene, tmp_path: Path) -> None:
+    material = new_material()
+    graph = Graph(material)
+    alpha = graph("VertexColor", "Alpha", layer_name="missing")
+    show(material, graph("Math", "Value", {"Value": alpha, "Value_001": 0.5}, operation="ADD"))
+    bpy.ops.mesh.primitive_plane_add(size=3.0)
+    bpy.context.object.data.materials.append(material)
+    expect_cycles(stage, tmp_path)
+
+
 VIEW_LAYER_PROPERTIES = ["of layer", "of scene", "of world", "of all", "missing", "samples", "frame_current"]
 VIEW_LAYER_PROPERTIES += ["render.resolution_x", "light_settings.distance"]
 

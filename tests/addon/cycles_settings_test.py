@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import pytest
 from gradus import cycles_settings, native, options, renderer, settings
-from support.nodes import shader_material
+from support.nodes import new_world, shader_material
 
 
 @pytest.fixture
@@ -79,13 +79,11 @@ def test_a_limit_of_textures_is_named(cycles: bpy.types.Scene) -> None:
     assert text.endswith("does not have: Texture Limit")
 
 
-def test_clamps_without_a_light_tree_are_named(cycles: bpy.types.Scene) -> None:
-    """With one light there is nothing to choose. Lights that are hidden were counted."""
+def test_clamps_of_several_lights_are_named(cycles: bpy.types.Scene) -> None:
+    """With one light there is nothing to choose. Lights that are hidden were counted, and none with a light tree."""
     lights = [bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT")) for _ in range(2)]
     for light in lights:
         cycles.collection.objects.link(light)
-    assert bool(clamp_warnings(cycles)) != hasattr(cycles.cycles, "use_light_tree")
-    use_no_light_tree(cycles)
     assert clamp_warnings(cycles, 0.0) == []
     [text] = clamp_warnings(cycles)
     assert text.startswith("Clamp Direct is 1")
@@ -93,21 +91,51 @@ def test_clamps_without_a_light_tree_are_named(cycles: bpy.types.Scene) -> None:
     assert clamp_warnings(cycles) == []
 
 
+def test_a_world_is_a_light_that_clamps_cut_without_a_light_tree(cycles: bpy.types.Scene) -> None:
+    cycles.collection.objects.link(bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT")))
+    world = new_world((1.0, 1.0, 1.0))
+    assert bool(clamp_warnings(cycles, world=world)) != hasattr(cycles.cycles, "use_light_tree")
+    use_no_light_tree(cycles)
+    assert len(clamp_warnings(cycles, world=world)) == 1
+
+
+@pytest.mark.parametrize(
+    ("kind", "size", "limit", "count"),
+    [
+        ("AREA", 1.0, 8, 0),
+        ("AREA", 1.0, 2, 1),
+        ("AREA", 1.0, 1, 1),
+        ("POINT", 0.0, 1, 0),
+        ("SPOT", 0.1, 2, 1),
+        ("SUN", 0.1, 1, 0),
+    ],
+)
+def test_lights_that_count_as_transparent_surfaces_are_named(
+    kind: str, size: float, limit: int, count: int, cycles: bpy.types.Scene
+) -> None:
+    """Cycles ends paths at lights that they cross, if the limit of transparent surfaces is reached there."""
+    light = bpy.data.lights.new("Light", kind)
+    if kind in {"POINT", "SPOT"}:
+        light.shadow_soft_size = size
+    cycles.collection.objects.link(bpy.data.objects.new("Light", light))
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    assert len(cycles_settings.transparency_warnings(depsgraph, limit)) == count
+
+
 def use_no_light_tree(scene: bpy.types.Scene) -> None:
     if hasattr(scene.cycles, "use_light_tree"):
         scene.cycles.use_light_tree = False
 
 
-def clamp_warnings(scene: bpy.types.Scene, clamp: float = 1.0) -> list[str]:
-    """Returns the warnings about the scene without a world."""
-    scene.world = None
+def clamp_warnings(scene: bpy.types.Scene, clamp: float = 1.0, world: bpy.types.World | None = None) -> list[str]:
+    """Returns the warnings about the scene with a world, or without one."""
+    scene.world = world
     return cycles_settings.clamp_warnings(bpy.context.evaluated_depsgraph_get(), clamp)
 
 
 @pytest.mark.parametrize(("strength", "count"), [(0.0, 0), (2.0, 1)])
 def test_surfaces_that_emit_are_lights_that_clamps_cut(cycles: bpy.types.Scene, strength: float, count: int) -> None:
-    """They were not counted."""
-    use_no_light_tree(cycles)
+    """They were not counted. Cycles chooses among their triangles, with a light tree, too."""
     cycles.collection.objects.link(bpy.data.objects.new("Light", bpy.data.lights.new("Light", "POINT")))
     bpy.ops.mesh.primitive_plane_add()
     bpy.context.object.data.materials.append(shader_material("Emission", {"Strength": strength}))

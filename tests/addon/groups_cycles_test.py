@@ -52,6 +52,10 @@ def noise(graph: Graph, vector: Socket) -> Socket:
     return graph("TexNoise", "Color", {"Vector": vector, "Scale": 2.0})
 
 
+def halved(graph: Graph, value: Socket) -> Socket:
+    return graph("Math", "Value", {"Value": value, "Value_001": 0.5}, operation="MULTIPLY")
+
+
 def facing(graph: Graph, normal: Socket) -> Socket:
     return graph("LayerWeight", "Facing", {"Normal": normal})
 
@@ -157,6 +161,31 @@ CASES: dict[str, Callable[[Graph], Socket]] = {
 }
 
 
+def reroute(graph: Graph) -> Socket:
+    return graph.tree.nodes.new("NodeReroute").outputs[0]
+
+
+def chain_of_reroutes(graph: Graph) -> Socket:
+    last = graph.tree.nodes.new("NodeReroute")
+    graph.tree.links.new(reroute(graph), last.inputs[0])
+    return last.outputs[0]
+
+
+def into_a_group(graph: Graph) -> Socket:
+    node = group(graph, "Float", halved)
+    graph.tree.links.new(reroute(graph), node.inputs[0])
+    return node.outputs[0]
+
+
+# Before Blender 5.0, a reroute without a link is a value of 0 that is linked.
+CASES |= {
+    "reroute to a number": lambda graph: graph("Math", "Value", {"Value": reroute(graph), "Value_001": 0.4}),
+    "chain of reroutes": lambda graph: graph("Math", "Value", {"Value": chain_of_reroutes(graph), "Value_001": 0.4}),
+    "reroute to a colour": lambda graph: graph("Gamma", "Color", {"Color": reroute(graph), "Gamma": 0.0}),
+    "reroute to a group": lambda graph: graph("Math", "Value", {"Value": into_a_group(graph), "Value_001": 0.2}),
+}
+
+
 @pytest.fixture(scope="module")
 def stage() -> bpy.types.Scene:
     """Returns a scene with a smooth sphere that fills the picture."""
@@ -198,6 +227,23 @@ def loop_in_a_group(graph: Graph) -> Socket:
     return group(graph, "Vector", lambda inner, value: loop_of_numbers(inner)).outputs[0]
 
 
+def loop_through_a_group(graph: Graph) -> Socket:
+    """Returns an output of a group that is linked to its own input. Cycles cuts the loop within the group."""
+    node = group(graph, "Float", halved)
+    graph.tree.links.new(node.outputs[0], node.inputs[0])
+    return node.outputs[0]
+
+
+def loop_through_a_reroute(graph: Graph) -> Socket:
+    """Returns what a reroute passes on whose link closes a loop through a group."""
+    node = group(graph, "Float", halved)
+    added = graph("Math", "Value", {"Value": node.outputs[0], "Value_001": 0.25}, operation="ADD")
+    way = graph.tree.nodes.new("NodeReroute")
+    graph.tree.links.new(added, way.inputs[0])
+    graph.tree.links.new(way.outputs[0], node.inputs[0])
+    return added
+
+
 def loop_of_shaders(graph: Graph) -> Socket:
     mixed = graph("MixShader", "Shader")
     graph.tree.links.new(graph("Emission", "Emission", {"Color": (0.5, 0.2, 0.1, 1.0)}), mixed.node.inputs[1])
@@ -205,7 +251,10 @@ def loop_of_shaders(graph: Graph) -> Socket:
     return mixed
 
 
-@pytest.mark.parametrize("make", [loop_of_numbers, loop_apart, loop_in_a_group, loop_of_shaders])
+LOOPS = [loop_of_numbers, loop_apart, loop_in_a_group, loop_through_a_group, loop_through_a_reroute, loop_of_shaders]
+
+
+@pytest.mark.parametrize("make", LOOPS)
 def test_a9_loops_of_links(make: Callable[[Graph], Socket], scene: bpy.types.Scene, tmp_path: Path) -> None:
     """Regression: from Blender 5.0 on, Cycles shows a material with a loop black. As it may hang, it is not run."""
     recording.add_camera(type="ORTHO", ortho_scale=1.2).location = (0.0, 0.0, 5.0)

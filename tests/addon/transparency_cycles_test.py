@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support import images
 from support.cycles import pictures
-from support.nodes import shader_material
+from support.nodes import new_world, shader_material
 
 SHEETS = 5
 
@@ -59,3 +59,21 @@ def test_rays_end_behind_the_last_transparent_surface(sheets: bpy.types.Scene, t
     assert cycles.max() > 0.5
     assert cycles.min() < 0.01  # behind too many sheets
     np.testing.assert_allclose(gradus, cycles, atol=0.02)
+
+
+@pytest.mark.parametrize("limit", [0, 8])
+def test_rays_pass_lights_without_a_limit(sheets: bpy.types.Scene, tmp_path: Path, limit: int) -> None:
+    """Cycles counts lights among the transparent surfaces, and a warning names it (cycles_settings_test.py)."""
+    for item in [item for item in sheets.objects if item.type == "MESH"]:
+        bpy.data.objects.remove(item)
+    light = bpy.data.objects.new("Area", bpy.data.lights.new("Area", "AREA"))
+    light.data.energy, light.data.size, light.visible_camera = 100.0, 40.0, True
+    light.location, light.rotation_euler = (0.0, -2.0, 0.0), (-np.pi / 2, 0.0, 0.0)
+    sheets.collection.objects.link(light)
+    sheets.world = new_world((0.2, 0.3, 0.5))
+    sheets.cycles.transparent_max_bounces = limit
+    cycles, gradus = pictures(sheets, tmp_path, 4)
+    assert gradus.min() > 0.15  # the world behind the light
+    assert (cycles.min() > 0.15) == (limit > 0)
+    if limit > 0:
+        np.testing.assert_allclose(gradus, cycles, atol=1e-3)

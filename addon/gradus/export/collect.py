@@ -242,7 +242,7 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCa
         properties.asset_name,
     )
     if copies:
-        entry.generated = tuple(instance.orco)
+        entry.generated = tuple(0.5 * value - 0.5 for value in instance.orco)  # as in Cycles
         entry.uv = tuple(instance.uv)
     if not is_light:
         entry.materials = cache.materials(obj, data, (properties.key[0], address))

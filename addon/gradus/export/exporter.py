@@ -166,9 +166,13 @@ class _Sync:
             culling.cull(collected, culled)
         for entry in collected.surfaces:
             entry.material_keys = self._materials.surface_keys(entry.materials)
+        for entry in collected.lights:
+            if light.constant_emission(entry.data) is None:
+                entry.material_keys = (self._materials.key(entry.data, "LIGHT"),)
         if self._materials.instance_attribute_names:
             of_keys = self._materials.instance_attributes_of
-            read_instance_attributes(self._depsgraph, collected.surfaces, of_keys, self._poll, self.warnings.add)
+            entries = (*collected.surfaces, *collected.lights)
+            read_instance_attributes(self._depsgraph, entries, of_keys, self._poll, self.warnings.add)
         self._set_channels()
         self._set_world()
         self._set_lights(collected)
@@ -311,33 +315,41 @@ class _Sync:
     # Lights and the world
 
     def _set_lights(self, collected: Collected) -> None:
-        lights = (self._light(entry, collected.matrices) for entry in collected.lights)
+        names = sorted(self._materials.instance_attribute_names)
+        attributes = instances.attributes_by_entry(collected.lights, names)
+        lights = (
+            self._light(entry, collected.matrices, attributes[index]) for index, entry in enumerate(collected.lights)
+        )
         records = native.struct_array(native.Light, lights)
         self._target.set_lights(records, len(collected.lights))
         if self._digest is not None:
             for record in records or ():
                 self._digest.struct(record)
                 self._digest.contents([self._materials.content(record.material)])
+            self._digest.arrays(attributes)
 
-    def _light(self, entry: Entry, matrices: array) -> native.Light:
+    def _light(self, entry: Entry, matrices: array, attributes: array) -> native.Light:
         data = entry.data
         matrix = matrices[16 * entry.index : 16 * entry.index + 16]
         record = native.Light()
         scale = tuple(sum(value * value for value in matrix[4 * axis : 4 * axis + 3]) ** 0.5 for axis in range(3))
         state = light.light_state(data, scale, compat.VERSION)
-        emission = light.constant_emission(data)
-        if emission is None:
-            record.material = self._materials.key(data, "LIGHT")
+        if entry.material_keys:
+            (record.material,) = entry.material_keys
             emission = (1.0, 1.0, 1.0)
+        else:
+            emission = light.constant_emission(data)
         record.strength[:] = [strength * factor for strength, factor in zip(state.strength, emission, strict=True)]
         record.type, record.flags, record.visibility = state.type, state.flags, entry.visibility
-        record.matrix[:] = light.light_matrix(data, matrix, scale, compat.VERSION)
+        record.matrix[:] = matrix
         record.radius, record.angle, record.spread = state.radius, state.angle, state.spread
         record.size[:] = state.size
         record.cone, record.blend = state.cone, state.blend
         record.sun_radiance_per_irradiance = state.sun_radiance_per_irradiance
         record.max_bounces = state.max_bounces
-        record.pass_index = entry.pass_index
+        record.random_id, record.pass_index = entry.random_id, entry.pass_index
+        record.color[:], record.generated[:], record.uv[:] = entry.color, entry.generated, entry.uv
+        record.attribute_count, record.attributes = len(attributes) // 4, native.pointer(attributes)
         record.name = native.name(entry.name)
         record.receiver_mask, record.blocker_mask = entry.links.receiver_mask, entry.links.blocker_mask
         record.light_group = self._groups.get(entry.light_group, 0)

@@ -10,9 +10,11 @@ from array import array
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from .. import compat
 from ..attribute_names import INSTANCER, OBJECT, PARTICLE
 from .arrays import read
 from .collect import Entry
+from .light import is_object
 from .node_instances import NodeInstances
 from .object_random import unit_hash
 from .properties import MISSING, Color, find_color
@@ -26,6 +28,9 @@ _PARTICLE_PROPERTIES = {
     "Velocity": ("velocity", 3),
     "Angular Velocity": ("angular_velocity", 3),
 }
+
+_OPAQUE: Color = (0.0, 0.0, 0.0, 1.0)
+"""The value of an attribute of what is no object. It has another alpha than that of an object, MISSING."""
 
 
 def read_instance_attributes(
@@ -57,6 +62,8 @@ class _Reader:
         self._warn = warn
 
     def value(self, entry: Entry, instance: Any, name: str) -> Color:
+        if entry.object.type == "LIGHT" and not is_object(compat.VERSION):
+            return self._particles.missing(name.removeprefix(PARTICLE)) if name.startswith(PARTICLE) else _OPAQUE
         if name.startswith(PARTICLE):
             return self._particles.value(instance, name.removeprefix(PARTICLE))
         if name.startswith(INSTANCER) and instance.is_instance:
@@ -94,12 +101,17 @@ class _Particles:
     def value(self, instance: Any, output: str) -> Color:
         system = instance.particle_system if instance.is_instance else None
         index = instance.persistent_id[0] if system is not None else 0
-        exists = system is not None and index < len(system.particles)
+        if system is None or index >= len(system.particles):
+            return self.missing(output)
         if output == "Index":
-            return (float(index) * exists,) * 3 + (1.0,)
+            return (float(index),) * 3 + (1.0,)
         if output == "Random":
-            return (unit_hash(index * exists),) * 3 + (1.0,)
-        return self._property(system, index, output) if exists else MISSING
+            return (unit_hash(index),) * 3 + (1.0,)
+        return self._property(system, index, output)
+
+    def missing(self, output: str) -> Color:
+        """Returns the value of what is no particle."""
+        return (unit_hash(0),) * 3 + (1.0,) if output == "Random" else MISSING
 
     def _property(self, system: Any, index: int, output: str) -> Color:
         name, width = _PARTICLE_PROPERTIES[output]

@@ -11,7 +11,7 @@ from .. import native
 from .collect import Collected, Entry, InstanceKey
 from .light_linking import NO_LINKS
 from .motion import InstanceBlur
-from .properties import MISSING
+from .properties import MISSING, Color
 
 
 def _pick(values: array, entries: list[Entry]) -> array:
@@ -119,12 +119,21 @@ def fill_instances(arrays: InstanceArrays, groups: dict[str, int]) -> tuple[nati
 
 
 def _attributes(arrays: InstanceArrays) -> array:
-    """Returns 4 values an instance for each attribute. Instances whose materials do not read it have zeros."""
+    """Returns 4 values an instance for each attribute. Instances whose materials do not read it have MISSING."""
     values = array("f")
     for name in arrays.attribute_names:
         for entry in arrays.entries:
-            values.extend((entry.attributes or {}).get(name, MISSING))
+            values.extend(_attribute(entry, name))
     return values
+
+
+def attributes_by_entry(entries: list[Entry], names: list[str]) -> list[array]:
+    """Returns 4 values for each attribute of an entry, for each entry."""
+    return [array("f", [value for name in names for value in _attribute(entry, name)]) for entry in entries]
+
+
+def _attribute(entry: Entry, name: str) -> Color:
+    return (entry.attributes or {}).get(name, MISSING)
 
 
 def _flat(entries: list[Entry], attribute: str, width: int) -> array:

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import ctypes
 import math
-from array import array
 from dataclasses import dataclass
 from typing import Any
 
 POINT, SPOT, SUN, RECTANGLE, ELLIPSE = range(5)
-NO_SHADOW, SPOT_COSINE, DISK_FACING, NO_MIS = 1, 2, 4, 8
+NO_SHADOW, SPOT_COSINE, DISK_FACING, NO_MIS, ROUND_CONE, WORLD_UV, NO_OBJECT = 1, 2, 4, 8, 16, 32, 64
 NO_LIMIT = 0xFFFFFFFF
 
 
@@ -48,9 +47,13 @@ def _scaled(values: tuple[float, ...], factor: float) -> tuple[float, float, flo
     return tuple(value * factor for value in values)
 
 
-def _flags(light: Any) -> int:
+def _flags(light: Any, version: tuple[int, ...]) -> int:
     cycles = getattr(light, "cycles", None)
     flags = 0
+    if version < (4, 0, 0):
+        flags |= ROUND_CONE | WORLD_UV
+    if not is_object(version):
+        flags |= NO_OBJECT
     # Before 4.2, Cycles has a switch of its own.
     if not getattr(cycles, "cast_shadow", light.use_shadow):
         flags |= NO_SHADOW
@@ -162,22 +165,16 @@ def light_state(light: Any, scale: tuple[float, ...], version: tuple[int, ...]) 
         state = _spot(light, power, version)
     else:
         state = _round(light, power, version)
-    state.flags |= _flags(light)
+    state.flags |= _flags(light, version)
     bounces = getattr(getattr(light, "cycles", None), "max_bounces", None)
     if bounces is not None and bounces < 1024:  # 1024 is Cycles' default and stands for no limit
         state.max_bounces = max(bounces, 0)
     return state
 
 
-def light_matrix(light: Any, matrix: array, scale: tuple[float, ...], version: tuple[int, ...]) -> array:
-    """Returns the matrix of a native light. From 4.0 on, its scale makes the cone of a spot elliptical."""
-    if light.type != "SPOT" or version >= (4, 0, 0):
-        return matrix
-    unscaled = array("f", matrix)
-    for axis, length in enumerate(scale):
-        for index in range(4 * axis, 4 * axis + 3):
-            unscaled[index] /= length or 1.0
-    return unscaled
+def is_object(version: tuple[int, ...]) -> bool:
+    """Returns whether nodes of a light read the properties of its object, as in Cycles since 4.5."""
+    return version >= (4, 5, 0)
 
 
 def constant_emission(light: Any) -> tuple[float, float, float] | None:

@@ -117,10 +117,14 @@ def _constant_attribute(color: tuple[float, ...], output: str) -> Value:
     return constant_color(color) if output == "Color" else constant_vector(color)
 
 
+_MISSING_IS_TRANSPARENT = 1
+
+
 @translator("ShaderNodeVertexColor")
 def color_attribute(view: NodeView) -> Value:
     output, kind = _ATTRIBUTE_OUTPUTS[view.output]
-    return view.add(Op.ATTRIBUTE, resource=view.name_resource(view.node.layer_name), kind=kind, output=output)
+    resource = view.name_resource(view.node.layer_name)
+    return view.add(Op.ATTRIBUTE, mode=_MISSING_IS_TRANSPARENT, resource=resource, kind=kind, output=output)
 
 
 @translator("ShaderNodeObjectInfo")

@@ -13,6 +13,10 @@ from .tree import Tree, find_socket
 Path = tuple[Any, ...]
 """The group nodes around a node, outermost first."""
 
+_LOOP = Value("loop")
+"""What a link that closes a loop passes on. Cycles cuts such a loop at the input of the node that computes with it, not
+at the groups and reroutes on the way."""
+
 
 class Walker:
     """Translates the nodes that an input needs. Each output of a node is translated once per path of groups."""
@@ -36,8 +40,17 @@ class Walker:
 
     def input(self, socket: Any, path: Path) -> Value:
         """Returns the value of an input: the linked value, converted to the kind of the socket, or its default."""
+        value = self._value(socket, path)
+        return replace(convert.default_value(socket), is_default=True) if value is _LOOP else value
+
+    def _value(self, socket: Any, path: Path) -> Value:
+        """Returns the value of an input, or _LOOP."""
         linked = self._passed_on(socket, path)
         kind = convert.kind_of(socket)
+        if linked is _LOOP:
+            _node, output = self.tree(path).source(socket)
+            # A conversion is a node that computes.
+            return _LOOP if convert.kind_of(output) == kind else Value(kind)
         if linked is not None:
             converted = convert.convert(self.program, linked, kind)
             if converted is not None:
@@ -52,20 +65,25 @@ class Walker:
         on, Blender inlines such groups (inlining.py).
         """
         value = self._passed_on(socket, path)
-        return None if value is not None and value.is_default and self.version < (5, 0, 0) else value
+        is_cut = value is not None and value.is_default and self.version < (5, 0, 0)
+        return None if is_cut or value is _LOOP else value
 
     def _passed_on(self, socket: Any, path: Path) -> Value | None:
-        """Returns the value that a link passes on to an input, or None if it has no link."""
+        """Returns the value that a link passes on to an input, or None if it has no link, or _LOOP."""
         source = self.tree(path).source(socket)
-        return self.output(source[0], source[1], path) if source else None
+        return self._output(source[0], source[1], path) if source else None
 
     def output(self, node: Any, socket: Any, path: Path) -> Value | None:
-        """Returns the value of an output. A link that closes a loop is ignored."""
+        """Returns the value of an output, or None if it has none or is part of a loop."""
+        value = self._output(node, socket, path)
+        return None if value is _LOOP else value
+
+    def _output(self, node: Any, socket: Any, path: Path) -> Value | None:
         key = (tuple(group.as_pointer() for group in path), node.as_pointer(), socket.identifier)
         if key in self._done:
             return self._done[key]
         if key in self._active:
-            return None
+            return _LOOP
         self._active.add(key)
         try:
             value = self._translate(node, socket, path)
@@ -79,7 +97,7 @@ class Walker:
             return self._pass_through(node, socket, path)
         name = node.bl_idname
         if name == "NodeReroute":
-            return self._passed_on(node.inputs[0], path)
+            return self._reroute(node, path)
         if name == "NodeGroupInput":
             return self._group_input(socket, path)
         if name == "ShaderNodeGroup" or node.type == "GROUP":
@@ -87,6 +105,14 @@ class Walker:
         view = NodeView(self, node, socket, path)
         translate = find_translator(name)
         return translate(view) if translate else fallback.replace(view)
+
+    def _reroute(self, node: Any, path: Path) -> Value | None:
+        """Returns the value that a reroute passes on. Without a link it is 0 before Blender 5.0, as in Cycles."""
+        value = self._passed_on(node.inputs[0], path)
+        if value is not None or self.version >= (5, 0, 0):
+            return value
+        kind = convert.kind_of(node.outputs[0])
+        return None if kind == SHADER else Value(kind, is_default=True)
 
     def _pass_through(self, node: Any, socket: Any, path: Path) -> Value | None:
         """Returns the value that a muted node passes through, by its internal links.
@@ -98,7 +124,7 @@ class Walker:
             if link.to_socket.identifier == socket.identifier:
                 value = self._passed_on(link.from_socket, path)
                 if value is not None:
-                    return convert.convert(self.program, value, kind)
+                    return value if value is _LOOP else convert.convert(self.program, value, kind)
                 return None if kind == SHADER else Value(kind, is_default=True)
         return None
 
@@ -114,7 +140,7 @@ class Walker:
         if not path:
             return None
         outer = find_socket(path[-1].inputs, socket.identifier)
-        return self.input(outer, path[:-1]) if outer is not None else None
+        return self._value(outer, path[:-1]) if outer is not None else None
 
     def _group(self, node: Any, socket: Any, path: Path) -> Value | None:
         if node.node_tree is None or any(group.node_tree == node.node_tree for group in path):
@@ -124,4 +150,4 @@ class Walker:
         if output is None:
             return None
         end = find_socket(output.inputs, socket.identifier)
-        return self.input(end, inner) if end is not None else None
+        return self._value(end, inner) if end is not None else None

@@ -254,7 +254,12 @@ typedef enum GradusLightFlags {
                                    4.0. */
   GRADUS_LIGHT_DISK_FACING = 4, /* A point or spot light is a disk that faces the receiver, as in Blender before 4.1
                                    and with soft falloff. */
-  GRADUS_LIGHT_NO_MIS = 8       /* Only light samples find it, scattered rays do not. */
+  GRADUS_LIGHT_NO_MIS = 8,      /* Only light samples find it, scattered rays do not. */
+  GRADUS_LIGHT_ROUND_CONE = 16, /* The scale does not make the cone of a spot elliptical, as in Blender before 4.0. */
+  GRADUS_LIGHT_WORLD_UV = 32,   /* Nodes read no UV map of it, and the parametric coordinates of points and spots are
+                                   those of the direction in world space, as in Blender before 4.0. */
+  GRADUS_LIGHT_NO_OBJECT = 64   /* Nodes read of its object nothing but a random number and the space of its normal,
+                                   as in Blender before 4.5. */
 } GradusLightFlags;
 
 /* An analytic light. It emits along its local -Z axis. */
@@ -263,8 +268,8 @@ typedef struct GradusLight {
   uint32_t type;                     /* GradusLightType: Shape of the light. */
   uint32_t flags;                    /* GradusLightFlags: Further properties. */
   uint32_t visibility;               /* GradusVisibility: Rays that see it. */
-  float matrix[16];                  /* Light to world. Its scale only makes the cone of a spot elliptical; sizes
-                                        include it. */
+  float matrix[16];                  /* Light to world, for nodes with the scale, which makes the cone of a spot
+                                        elliptical; sizes include it. */
   float strength[3];                 /* Point and spot: intensity in W/sr. Sun: irradiance in W/m² on a surface that
                                         faces it. Rectangle and ellipse: radiance in W/(m² sr). */
   float radius;                      /* Point and spot: radius of the sphere. [m] */
@@ -281,9 +286,16 @@ typedef struct GradusLight {
   int32_t pass_index;                /* Value that light nodes read as the object's index. */
   const char* name;                  /* Name that warnings use. */
   uint32_t light_group;              /* Light group: index + 1 of a channel; 0 = none. */
-  uint32_t reserved;                 /* 0. */
+  uint32_t random_id;                /* Random number of the object, which light nodes read as a fraction of 2^32. */
   uint64_t receiver_mask;            /* Bits of the light sets that the light lights; 0 = all. */
   uint64_t blocker_mask;             /* Bits of the shadow sets that block the light; 0 = all. */
+  float color[4];                    /* Colour of the object, which light nodes read. */
+  float generated[3];                /* Generated coordinates of the point on an instancer where the light was
+                                        instanced. */
+  float uv[2];                       /* UV coordinates of the same point. */
+  uint32_t attribute_count;          /* Number of attributes. */
+  const float* attributes;           /* 4 values for each of the attributes that GradusInstances names, in their
+                                        order. */
 } GradusLight;
 
 /* Projection of a camera. */

@@ -66,7 +66,8 @@
  *                       column-major; only for OBJECT with another object. Resource: name of the UV map; 0 = the
  *                       default one.
  *   TANGENT           - -> vector: Tangent of the surface. Mode: GradusTangentMode. Resource: UV map.
- *   ATTRIBUTE         - -> color, vector, factor, alpha: An attribute of the mesh. Resource: name.
+ *   ATTRIBUTE         - -> color, vector, factor, alpha: An attribute of the mesh. Mode: 1: alpha is 0 if it is
+ *                       missing. Resource: name.
  *   OBJECT_INFO       - -> location, color, index, random, alpha: Properties of the instance.
  *   LIGHT_PATH        - -> value: A property of the ray. Mode: GradusLightPathMode.
  *   LAYER_WEIGHT      blend, normal -> fresnel, facing: Weights by the viewing angle.

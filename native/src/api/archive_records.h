@@ -115,9 +115,15 @@ void visit(Archive& a, GradusLight& s) {
   a.value(s.max_bounces);
   a.value(s.pass_index);
   a.value(s.light_group);
+  a.value(s.random_id);
   a.value(s.receiver_mask);
   a.value(s.blocker_mask);
+  a.values(s.color);
+  a.values(s.generated);
+  a.values(s.uv);
+  a.value(s.attribute_count);
   a.text(s.name);
+  a.array(s.attributes, uint64_t{4} * s.attribute_count);
 }
 
 template <class Archive>

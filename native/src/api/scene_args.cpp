@@ -159,6 +159,7 @@ std::vector<GradusLight> read_lights(const GradusLight* from, size_t count) {
   for (GradusLight& light : lights) {
     light.name = checked_name(light.name, "light.name");
     check_enum(light.type, 5, "light.type");
+    check_array(light.attributes, light.attribute_count, "light.attributes", 4);
   }
   return lights;
 }

@@ -11,7 +11,7 @@
 
 namespace gradus::api {
 
-inline constexpr uint32_t kSceneFormat = 5;
+inline constexpr uint32_t kSceneFormat = 6;
 
 struct FileHeader {
   char magic[8] = {'G', 'R', 'A', 'D', 'U', 'S', 'S', '\n'};

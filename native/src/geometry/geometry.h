@@ -9,7 +9,7 @@
 #include "base/types.h"
 #include "geometry/light_links.h"
 #include "geometry/matrix_keys.h"
-#include "geometry/placement.h"
+#include "geometry/object_data.h"
 #include "geometry/surface.h"
 #include "gradus/gradus.h"
 
@@ -26,7 +26,7 @@ inline constexpr uint64_t kNobody = UINT64_MAX;
 
 // A mesh with its placement in the rendered frame. Geometric normals point to the side from which the corners run
 // counter-clockwise in the mesh's own space, also if the instance is mirrored.
-struct InstanceData : Placement {
+struct InstanceData : ObjectData {
   std::shared_ptr<const MeshData> mesh;
   const FlatTriangle* flat_triangles = nullptr;  // owned by the accelerator; nullptr: not in the top level
   std::shared_ptr<const MatrixKeys> keys;        // matrices while the shutter is open; nullptr: constant
@@ -36,21 +36,15 @@ struct InstanceData : Placement {
   bool was_there = true, will_be_there = true;  // the instance exists in the previous, in the next frame
   bool mirrored = false;
   uint32_t visibility = GRADUS_VISIBLE_ALL;
-  uint64_t id = 0;  // the same in every frame; kNobody: belongs to no object
-  uint32_t random_id = 0;
-  int32_t pass_index = 0;
-  Vec4 color{1.0f};
+  uint64_t id = 0;                        // the same in every frame; kNobody: belongs to no object
   float shadow_terminator_offset = 0.0f;  // cosine, see shadow_terminator.h
   float terminator_frequency = 1.0f;      // see SurfacePoint
   uint64_t light_set = 1;                 // bit of its light set as a receiver
   uint64_t shadow_set = 1;                // bit of its shadow set as a blocker
   EmitterLinks links;                     // of its emission
-  Vec3 generated{0.0f};
-  Vec2 uv{0.0f};
-  uint32_t light_group = 0;  // index + 1 in Snapshot::channels of what the instance emits; 0: none
+  uint32_t light_group = 0;               // index + 1 in Snapshot::channels of what the instance emits; 0: none
   // Identifiers of its name and of its topmost parent's; 0 unless the scene has a Cryptomatte.
   float cryptomatte_object = 0.0f, cryptomatte_asset = 0.0f;
-  std::vector<Vec4> attributes;                               // in the order of Geometry::instance_attribute_names
   std::vector<uint32_t> materials;                            // index in Snapshot::materials of each slot
   std::vector<std::shared_ptr<const TangentField>> tangents;  // of the UV maps that a material uses
   // The instance before its vertices were displaced, if a material bends normals as a bump of that surface.

@@ -26,6 +26,8 @@ void set_axes(const GradusLight& d, AnalyticLight* light) {
 // Sets the space of a spot from the light's matrix, or from its axes if the matrix has no volume.
 void set_spot_space(const GradusLight& d, AnalyticLight* light) {
   Mat3 axes(glm::make_mat4(d.matrix));
+  if (d.flags & GRADUS_LIGHT_ROUND_CONE)
+    for (int i = 0; i < 3; ++i) axes[i] = glm::normalize(axes[i]);
   axes[2] = -axes[2];
   light->spot_space = glm::inverse(axes);
   float sum = 0.0f;
@@ -109,8 +111,9 @@ bool make_analytic_light(const GradusLight& d, const Vec3& origin, AnalyticLight
   light->casts_shadow = !(d.flags & GRADUS_LIGHT_NO_SHADOW);
   light->multiple_importance = !(d.flags & GRADUS_LIGHT_NO_MIS);
   light->visibility = d.visibility;
+  light->is_object = !(d.flags & GRADUS_LIGHT_NO_OBJECT);
+  light->world_uv = (d.flags & GRADUS_LIGHT_WORLD_UV) != 0;
   light->max_bounces = d.max_bounces;
-  light->pass_index = d.pass_index;
   light->light_group = d.light_group;
   light->links = geometry::emitter_links(d.receiver_mask, d.blocker_mask);
   for (int i = 0; i < 3; ++i) light->position[i] = float(double(d.matrix[12 + i]) - double(origin[i]));

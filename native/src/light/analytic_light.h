@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 
 #include "base/types.h"
 #include "geometry/light_links.h"
+#include "geometry/object_data.h"
 #include "gradus/gradus.h"
 #include "light/light_sampling.h"
 #include "light/light_tree.h"
@@ -24,11 +26,13 @@ struct AnalyticLight {
       true;  // False: only light sampling finds the light, and rays pass through it, as in Cycles.
   uint32_t visibility = GRADUS_VISIBLE_ALL;
   uint32_t max_bounces = UINT32_MAX;
-  int32_t pass_index = 0;
   uint32_t light_group = 0;  // index + 1 in Snapshot::channels; 0: none
   geometry::EmitterLinks links;
   // Index of the snapshot's material whose emission multiplies `intensity`; UINT32_MAX: the factor is 1.
   uint32_t material = UINT32_MAX;
+  std::shared_ptr<const geometry::ObjectData> object;  // what the material reads of the light; null without a material
+  bool is_object = true;                               // the material reads more than a random number and normals
+  bool world_uv = false;                               // see GRADUS_LIGHT_WORLD_UV
   Vec3 position{0.0f};
   Vec3 axis_x{1, 0, 0};
   Vec3 axis_y{0, 1, 0};

@@ -153,6 +153,15 @@ Vec2 spherical(const Vec3& d) {
   return {u, 1.0f - std::acos(std::clamp(d.z, -1.0f, 1.0f)) * kInvPi};
 }
 
+// Returns the texture coordinates of a direction on a sun, as in Cycles. `d` points to the sun.
+Vec2 sun_uv(const AnalyticLight& light, const Vec3& d) {
+  if (light.world_uv) return {1.0f, 0.0f};
+  const float half_sine = std::sqrt(0.5f * light.one_minus_cos_sun);  // sine of a quarter of the sun's angle
+  const float sine = 2.0f * half_sine * std::sqrt(1.0f - half_sine * half_sine);
+  if (!(sine > 0.0f)) return Vec2(0.5f);
+  return 0.5f + 0.5f * Vec2(Mat3(light.object->to_local) * d) / (sine * glm::length(d - light.emission_direction));
+}
+
 // Returns the texture coordinates of a point on a light, as in Cycles. They span [0, 1]² over an area light, over all
 // directions of a point light, and over the square that encloses a spot's cone.
 Vec2 light_uv(const AnalyticLight& light, const LightPoint& point, const shading::LightShadingPoint& at) {
@@ -161,8 +170,12 @@ Vec2 light_uv(const AnalyticLight& light, const LightPoint& point, const shading
     return 0.5f +
            0.5f * Vec2(glm::dot(d, light.axis_x) / light.half_width, glm::dot(d, light.axis_y) / light.half_height);
   }
-  if (light.at_infinity()) return Vec2(0.0f);
-  if (!light.is_spot) return spherical(at.normal * at.axes);
+  if (light.at_infinity()) return sun_uv(light, -at.wo);
+  if (light.world_uv) {
+    const Vec2 uv = spherical(at.normal);
+    return {1.0f - uv.x - uv.y, uv.x};
+  }
+  if (!light.is_spot) return spherical(glm::normalize(Mat3(light.object->to_local) * at.normal));
   const Vec3 d = light.spot_space * at.wo;
   const float tangent = std::sqrt(std::max(0.0f, 1.0f - light.cos_cone * light.cos_cone)) / light.cos_cone;
   return d.z > 0.0f && tangent > 0.0f ? 0.5f + 0.5f * Vec2(d) / (d.z * tangent) : Vec2(0.5f);
@@ -173,12 +186,15 @@ Rgb light_emission(const LitScene& scene, const AnalyticLight& light, const Ligh
                    const LightEvaluation& view) {
   if (light.material == UINT32_MAX || is_black(view.radiance)) return Rgb(1.0f);
   shading::LightShadingPoint at;
-  at.position = point.position;
+  // As in Cycles, the position of a sun is the direction in which it shines.
+  at.position = light.at_infinity() ? -view.direction - scene.origin : point.position;
   // In Cycles every point of a disk that faces its receiver has a normal of its own, towards the receiver.
   const bool faces_receiver = point.normal == Vec3(0.0f) || light.shape == AnalyticLight::Shape::FacingDisk;
   at.normal = faces_receiver ? -view.direction : point.normal;
   at.wo = -view.direction;
-  at.axes = Mat3(light.axis_x, light.axis_y, -light.emission_direction);
+  at.object = light.object.get();
+  at.is_object = light.is_object;
+  at.has_uv_map = !light.world_uv;
   at.uv = light_uv(light, point, at);
   return shading::shade_light(scene, light.material, at, light_ray(view.distance));
 }

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cstdio>
 
+#include <glm/gtc/type_ptr.hpp>
+
 #include "base/error.h"
 #include "base/fpu.h"
 #include "light/light_scene.h"
@@ -83,6 +85,24 @@ void set_light_material(const Snapshot& snapshot, uint32_t material, light::Anal
   analytic_light->material = UINT32_MAX;
 }
 
+// Returns what the node program of a light reads of its object. A matrix without volume has no inverse.
+std::shared_ptr<const geometry::ObjectData> light_object(const LightSource& light, const Snapshot& snapshot) {
+  const GradusLight& d = light.desc;
+  auto object = std::make_shared<geometry::ObjectData>();
+  const Mat4 world = glm::make_mat4(d.matrix);
+  const glm::dmat4 matrix = internal_matrix(world, snapshot.origin);
+  if (is_usable(world)) static_cast<geometry::Placement&>(*object) = geometry::make_placement(matrix);
+  object->to_world = Mat4(matrix);
+  object->random_id = d.random_id;
+  object->pass_index = d.pass_index;
+  object->color = glm::make_vec4(d.color);
+  object->generated = glm::make_vec3(d.generated);
+  object->uv = glm::make_vec2(d.uv);
+  object->attributes = light.attributes;
+  object->attributes.resize(snapshot.instance_attribute_names.size(), Vec4(0.0f, 0.0f, 0.0f, 1.0f));
+  return object;
+}
+
 std::vector<light::AnalyticLight> place_lights(const Scene::State& state, const MaterialIndex& indices,
                                                Snapshot* snapshot) {
   std::vector<light::AnalyticLight> analytic_lights;
@@ -91,6 +111,7 @@ std::vector<light::AnalyticLight> place_lights(const Scene::State& state, const 
     light::AnalyticLight analytic_light;
     const bool is_made = light::make_analytic_light(light.desc, snapshot->origin, &analytic_light);
     if (is_made) set_light_material(*snapshot, index_of(indices, light.desc.material, UINT32_MAX), &analytic_light);
+    if (analytic_light.material != UINT32_MAX) analytic_light.object = light_object(light, *snapshot);
     if (!light::is_finite_light(light.desc) || !is_finite(analytic_light.intensity)) {
       broken.push_back(light.name);
     } else if (is_made && !is_black(analytic_light.intensity)) {

@@ -34,12 +34,17 @@ class Contents {
 
 void hash_light(const LightSource& light, const Contents& contents, ContentHash* hash) {
   const GradusLight& d = light.desc;
-  for (const uint32_t v : {d.type, d.flags, d.visibility, d.max_bounces, uint32_t(d.pass_index)}) hash->value(v);
+  for (const uint32_t v : {d.type, d.flags, d.visibility, d.max_bounces, uint32_t(d.pass_index), d.random_id})
+    hash->value(v);
   hash_matrix(d.matrix, hash);
   for (const float v : {d.strength[0], d.strength[1], d.strength[2], d.radius, d.angle, d.size[0], d.size[1], d.spread,
                         d.cone, d.blend, d.sun_radiance_per_irradiance})
     hash->value(v);
   for (const uint64_t mask : {d.receiver_mask, d.blocker_mask}) hash->value(mask);
+  hash->bytes(d.color, sizeof(d.color));
+  hash->bytes(d.generated, sizeof(d.generated));
+  hash->bytes(d.uv, sizeof(d.uv));
+  hash->array(light.attributes);
   hash->value(contents.material(d.material));
 }
 

@@ -17,15 +17,6 @@ constexpr double kFarRadii = 64.0;
 // Minimum relative volume of a matrix's columns. Below it, the inverse is not accurate enough in float.
 constexpr double kMinVolume = 1e-10;
 
-bool is_usable(const Mat4& m) {
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j)
-      if (!(std::fabs(m[i][j]) < 1e15f)) return false;
-  const glm::dmat3 axes{glm::dmat4(m)};
-  const double sizes = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
-  return sizes > 1e-45 && std::fabs(glm::determinant(axes)) > kMinVolume * sizes;
-}
-
 struct Bounds {
   glm::dvec3 lower{1e300}, upper{-1e300};
   void add(const glm::dvec3& p) {
@@ -144,6 +135,15 @@ void set_identifiers(const geometry::InstanceArrays& a, const std::vector<size_t
 }
 
 }  // namespace
+
+bool is_usable(const Mat4& m) {
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      if (!(std::fabs(m[i][j]) < 1e15f)) return false;
+  const glm::dmat3 axes{glm::dmat4(m)};
+  const double sizes = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
+  return sizes > 1e-45 && std::fabs(glm::determinant(axes)) > kMinVolume * sizes;
+}
 
 glm::dmat4 internal_matrix(const Mat4& matrix, const Vec3& origin) {
   glm::dmat4 m(matrix);

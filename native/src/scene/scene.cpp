@@ -3,6 +3,7 @@
 #include <array>
 #include <set>
 
+#include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
 
 #include "base/cryptomatte_id.h"
@@ -90,7 +91,11 @@ void Scene::set_lights(const GradusLight* lights, size_t count) {
     if (lights[i].type > GRADUS_LIGHT_ELLIPSE) throw invalid_argument("light " + std::to_string(i) + ": unknown type");
     copies[i].desc = lights[i];
     copies[i].name = lights[i].name ? lights[i].name : "";
+    copies[i].attributes.resize(lights[i].attribute_count);
+    for (size_t k = 0; k < copies[i].attributes.size(); ++k)
+      copies[i].attributes[k] = glm::make_vec4(lights[i].attributes + 4 * k);
     copies[i].desc.name = nullptr;
+    copies[i].desc.attributes = nullptr;
   }
   const Lock lock(state_->mutex);
   state_->lights = std::move(copies);

@@ -28,10 +28,11 @@ struct MaterialData;
 
 namespace gradus::scene {
 
-// A light as the caller has set it. The pointers of `desc` are null, and `name` holds a copy of its name.
+// A light as the caller has set it. The pointers of `desc` are null, and copies hold what they led to.
 struct LightSource {
   GradusLight desc{};
   std::string name;
+  std::vector<Vec4> attributes;
 };
 
 struct LoadedImage {
@@ -100,6 +101,8 @@ struct AffectedObjects {
   }
 };
 
+// Returns whether the matrix of an instance is finite and has a volume, so that it has an inverse.
+bool is_usable(const Mat4& matrix);
 // Returns the exact matrix of an instance in internal space.
 glm::dmat4 internal_matrix(const Mat4& matrix, const Vec3& origin);
 

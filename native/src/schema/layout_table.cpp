@@ -118,9 +118,14 @@ constexpr FieldLayout kLightFields[] = {
     FIELD(GradusLight, pass_index),
     FIELD(GradusLight, name),
     FIELD(GradusLight, light_group),
-    FIELD(GradusLight, reserved),
+    FIELD(GradusLight, random_id),
     FIELD(GradusLight, receiver_mask),
     FIELD(GradusLight, blocker_mask),
+    FIELD(GradusLight, color),
+    FIELD(GradusLight, generated),
+    FIELD(GradusLight, uv),
+    FIELD(GradusLight, attribute_count),
+    FIELD(GradusLight, attributes),
 };
 
 constexpr FieldLayout kCameraFields[] = {
@@ -363,6 +368,9 @@ constexpr int64_t kLightFlagsValues[] = {
     GRADUS_LIGHT_SPOT_COSINE,
     GRADUS_LIGHT_DISK_FACING,
     GRADUS_LIGHT_NO_MIS,
+    GRADUS_LIGHT_ROUND_CONE,
+    GRADUS_LIGHT_WORLD_UV,
+    GRADUS_LIGHT_NO_OBJECT,
 };
 
 constexpr int64_t kCameraTypeValues[] = {

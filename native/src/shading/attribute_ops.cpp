@@ -8,6 +8,10 @@ namespace gradus::shading {
 
 Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, uint32_t* channels) {
   if (channels) *channels = 0;
+  if (c.light && c.light->has_uv_map && (name ? *name == "uv" : uv)) {
+    if (channels) *channels = 3;
+    return Vec4(c.light->uv, 0.0f, 1.0f);
+  }
   if (!c.instance) return Vec4(0.0f);
   const geometry::MeshData& mesh = *c.instance->mesh;
   const geometry::MeshAttribute* found = name ? geometry::find_attribute(mesh, *name) : nullptr;
@@ -19,12 +23,16 @@ Vec4 attribute_value(const ShadeContext& c, const std::string* name, bool uv, ui
 
 namespace {
 
-// Returns an attribute of the instance, or null if it has none of that name.
+// Returns the object at the point, also of a light whose nodes read nothing else of it. Null on the background.
+const geometry::ObjectData* any_object_of(const ShadeContext& c) { return c.light ? c.light->object : c.instance; }
+
+// Returns an attribute of the instance or light, or null if it has none of that name.
 const Vec4* instance_attribute(const ShadeContext& c, const std::string* name) {
-  if (!c.instance || !c.scene || !name) return nullptr;
+  const geometry::ObjectData* object = any_object_of(c);
+  if (!object || !c.scene || !name) return nullptr;
   const std::vector<std::string>& names = c.scene->instance_attribute_names;
   const auto found = std::find(names.begin(), names.end(), *name);
-  return found == names.end() ? nullptr : &c.instance->attributes[size_t(found - names.begin())];
+  return found == names.end() ? nullptr : &object->attributes[size_t(found - names.begin())];
 }
 
 }  // namespace
@@ -40,7 +48,8 @@ void instance_attribute_op(const ResourceArgs& args, const ShadeContext& c, Vec4
 void attribute_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
   uint32_t channels = 0;
   Vec4 v = attribute_value(c, args.name, false, &channels);
-  if (channels == 0) v.w = 1.0f;  // as in Cycles, a missing attribute is black and opaque
+  // As in Cycles, a missing attribute is black and opaque, and a missing colour transparent.
+  if (channels == 0) v.w = args.mode == 1 ? 0.0f : 1.0f;
   if (channels == 1) v = Vec4(v.x, v.x, v.x, 1.0f);
   out[0] = out[1] = Vec4(Vec3(v), 1.0f);
   out[2] = splat(channels <= 2 ? v.x : mean_component(Vec3(v)));  // of two components Cycles takes the first
@@ -48,17 +57,17 @@ void attribute_op(const ResourceArgs& args, const ShadeContext& c, Vec4* out) {
 }
 
 void object_info_op(const ResourceArgs&, const ShadeContext& c, Vec4* out) {
-  if (!c.instance) {
-    for (int i = 0; i < 5; i++) out[i] = Vec4(0.0f);
-    return;
-  }
+  for (int i = 0; i < 5; i++) out[i] = Vec4(0.0f);
+  if (const geometry::ObjectData* any = any_object_of(c))
+    out[3] = splat(static_cast<float>(any->random_id) * (1.0f / 4294967296.0f));
+  const geometry::ObjectData* object = object_of(c);
+  if (!object) return;
   const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
   geometry::Placement storage;
   out[0] = value(Vec3(placement_of(c, &storage).to_world[3]) + origin);
-  out[1] = Vec4(Vec3(c.instance->color), 1.0f);
-  out[2] = splat(static_cast<float>(c.instance->pass_index));
-  out[3] = splat(static_cast<float>(c.instance->random_id) * (1.0f / 4294967296.0f));
-  out[4] = splat(c.instance->color.w);
+  out[1] = Vec4(Vec3(object->color), 1.0f);
+  out[2] = splat(static_cast<float>(object->pass_index));
+  out[4] = splat(object->color.w);
 }
 
 }  // namespace gradus::shading

@@ -44,8 +44,7 @@ ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& po
   c.position = point.position;
   c.normal = c.geometric_normal = point.normal;
   c.wo = point.wo;
-  c.uv = point.uv;
-  c.light_axes = &point.axes;
+  c.light = &point;
   c.ray = ray;
   return c;
 }
@@ -54,7 +53,13 @@ void note_fault(const ShadeContext& c) {
   if (c.scene != nullptr && c.scene->faulty_materials) c.scene->faulty_materials->add(c.material);
 }
 
+const geometry::ObjectData* object_of(const ShadeContext& c) {
+  if (c.instance) return c.instance;
+  return c.light && c.light->is_object ? c.light->object : nullptr;
+}
+
 const geometry::Placement& placement_of(const ShadeContext& c, geometry::Placement* storage) {
+  if (!c.instance) return *c.light->object;
   return c.instance->placement(c.hit.time, storage);
 }
 
@@ -82,15 +87,15 @@ ShadeContext moved_context(const ShadeContext& context, const geometry::SurfaceD
 const ShadeContext& center_of(const ShadeContext& c) { return c.center ? center_of(*c.center) : c; }
 
 Vec3 normal_to_local(const ShadeContext& c, const Vec3& normal) {
-  if (c.light_axes) return glm::transpose(*c.light_axes) * normal;
   // Normals map to local space by the transpose of the object's matrix, the inverse of the matrix of normals.
   geometry::Placement storage;
-  return c.instance ? safe_normalize(glm::transpose(Mat3(placement_of(c, &storage).to_world)) * normal) : normal;
+  if (!c.instance && !c.light) return normal;
+  return safe_normalize(glm::transpose(Mat3(placement_of(c, &storage).to_world)) * normal);
 }
 
 Vec3 normal_to_world(const ShadeContext& c, const Vec3& normal) {
   geometry::Placement storage;
-  return c.instance ? safe_normalize(placement_of(c, &storage).normal_to_world * normal) : normal;
+  return object_of(c) ? safe_normalize(placement_of(c, &storage).normal_to_world * normal) : normal;
 }
 
 }  // namespace gradus::shading

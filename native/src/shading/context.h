@@ -22,8 +22,8 @@ struct ShadeContext {
   Vec3 normal = Vec3(0, 0, 1);            // shading normal, flipped together with the geometric normal
   Vec3 geometric_normal = Vec3(0, 0, 1);  // on the side of wo
   Vec3 wo = Vec3(0, 0, 1);
-  Vec2 uv = Vec2(0.0f);              // coordinates on the surface of a light
-  const Mat3* light_axes = nullptr;  // axes of a light; null for other points
+  const LightShadingPoint* light = nullptr;  // null for other points
+  Vec2 uv = Vec2(0.0f);                      // UV coordinates of an estimate
   // The shaded point, if this one is a neighbour whose height a bump compares with that of the shaded point.
   const ShadeContext* center = nullptr;
   RayState ray;
@@ -33,7 +33,7 @@ struct ShadeContext {
 };
 
 // Contexts for a point of a surface, for the background in a direction that points away from the scene, and for a point
-// of a light.
+// of a light. `point` must outlive the context of a light.
 ShadeContext surface_context(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,
                              const RayState& ray);
 ShadeContext background_context(const ShadedScene& scene, const Vec3& direction, const RayState& ray);
@@ -42,7 +42,11 @@ ShadeContext light_context(const ShadedScene& scene, const LightShadingPoint& po
 // Notes in the scene that a value of the material was left out, because it is not finite.
 void note_fault(const ShadeContext& context);
 
-// Returns the placement of the instance at the time of the hit. `storage` holds it if it has to be interpolated.
+// Returns the object of which nodes read the properties: that of the instance, or of a light that has one for nodes.
+// Null for other lights and for the background.
+const geometry::ObjectData* object_of(const ShadeContext& context);
+// Returns the placement of the instance at the time of the hit, or else of the light; there must be one. `storage`
+// holds it if it has to be interpolated.
 const geometry::Placement& placement_of(const ShadeContext& context, geometry::Placement* storage);
 // Returns the length at the point of what the camera sees at an angle of 1 radian: the distance of the point. For an
 // orthographic camera it is the width of the picture, and without a camera the radius of the scene.
@@ -56,7 +60,8 @@ ShadeContext moved_context(const ShadeContext& context, const geometry::SurfaceD
                            const Vec3& step);
 // Returns the point to which a bump compares this neighbour of it, or the context itself.
 const ShadeContext& center_of(const ShadeContext& context);
-// Transform normals between internal space and the object's space. Without an object they return the normal unchanged.
+// Transform normals between internal space and the object's space. Without an object they return the normal unchanged;
+// the space of its normal is known of any light.
 Vec3 normal_to_local(const ShadeContext& context, const Vec3& normal);
 Vec3 normal_to_world(const ShadeContext& context, const Vec3& normal);
 

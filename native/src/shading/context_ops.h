@@ -11,9 +11,12 @@ inline bool is_tangent_space(uint32_t space) {
   return space == GRADUS_NORMAL_TANGENT || space == GRADUS_NORMAL_UNIT_TANGENT ||
          space == GRADUS_NORMAL_BLENDED_TANGENT;
 }
-// Returns the tangent around the z axis of the object's generated coordinates, perpendicular to the normal.
+// Returns the tangent around the z axis of the object's generated coordinates, perpendicular to the normal. It is
+// not a number on lights.
 Vec3 default_tangent(const ShadeContext& context);
-// Returns the generated coordinates, or the position in world space without an object.
+// Returns the position in the space of the object, or in world space without one.
+Vec3 local_position(const ShadeContext& context);
+// Returns the generated coordinates, or local_position() without a surface.
 Vec3 generated(const ShadeContext& context);
 // Returns the interpolated tangent of a UV map, in the object's space, with its handedness in w. It is 0 if the mesh
 // has no usable UV map. `name` may be null, for the default map.

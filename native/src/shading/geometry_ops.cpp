@@ -1,4 +1,6 @@
 // The Geometry node.
+#include <cmath>
+
 #include "geometry/surface_values.h"
 #include "shading/context_ops.h"
 #include "shading/lattice_hash.h"
@@ -7,11 +9,17 @@
 namespace gradus::shading {
 
 Vec3 generated(const ShadeContext& c) {
-  if (!c.instance) return world_position(c);
+  if (!c.instance) return local_position(c);
   return geometry::generated_at(*c.instance, c.hit);
 }
 
+Vec3 local_position(const ShadeContext& c) {
+  geometry::Placement storage;
+  return object_of(c) ? Vec3(placement_of(c, &storage).to_local * Vec4(c.position, 1.0f)) : world_position(c);
+}
+
 Vec3 default_tangent(const ShadeContext& c) {
+  if (c.light) return Vec3(NAN);  // as in Cycles, where a light has no tangents to normalise
   if (!c.instance) return Vec3(1, 0, 0);
   const Vec3 g = generated(c) - 0.5f;
   const Vec3 around = normal_to_world(c, Vec3(-g.y, g.x, 0.0f));
@@ -36,7 +44,7 @@ Vec3 quantity(uint32_t mode, const ShadeContext& c) {
     case GRADUS_GEOMETRY_INCOMING:
       return c.wo;
     case GRADUS_GEOMETRY_PARAMETRIC:
-      return c.light_axes ? Vec3(c.uv, 0.0f) : geometry::parametric_at(c.hit);
+      return c.light ? Vec3(c.light->uv, 0.0f) : geometry::parametric_at(c.hit);
     case GRADUS_GEOMETRY_BACKFACING:
       return Vec3(c.backfacing ? 1.0f : 0.0f);
     case GRADUS_GEOMETRY_POINTINESS:

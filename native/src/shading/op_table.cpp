@@ -43,7 +43,7 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_TEX_COORD] = {"TEX_COORD", OpKind::Context, 0, 1, 0, GRADUS_TEX_COORD_INSTANCER_UV};
   table[GRADUS_OP_TEX_COORD].ray_modes = modes({GRADUS_TEX_COORD_REFLECTION});
   table[GRADUS_OP_TANGENT] = {"TANGENT", OpKind::Context, 0, 1, 0, GRADUS_TANGENT_UV};
-  table[GRADUS_OP_ATTRIBUTE] = {"ATTRIBUTE", OpKind::Context, 0, 4, 0, 0};
+  table[GRADUS_OP_ATTRIBUTE] = {"ATTRIBUTE", OpKind::Context, 0, 4, 0, 1};
   table[GRADUS_OP_OBJECT_INFO] = {"OBJECT_INFO", OpKind::Context, 0, 5, 0, 0};
   table[GRADUS_OP_LIGHT_PATH] = {"LIGHT_PATH", OpKind::Context, 0, 1, 0, GRADUS_LIGHT_PATH_PORTAL_DEPTH};
   table[GRADUS_OP_LIGHT_PATH].ray_modes = kAllModes;

@@ -5,6 +5,7 @@
 
 #include "base/types.h"
 #include "bsdf/closures.h"
+#include "geometry/object_data.h"
 #include "geometry/surface.h"
 
 namespace gradus::shading {
@@ -108,7 +109,9 @@ struct LightShadingPoint {
   Vec3 normal = Vec3(0, 0, 1);
   Vec3 wo = Vec3(0, 0, 1);  // towards the receiver
   Vec2 uv = Vec2(0.0f);     // coordinates on the light's surface
-  Mat3 axes{1.0f};          // axes of the light, without scale
+  const geometry::ObjectData* object = nullptr;
+  bool is_object = true;   // nodes read more of the object than a random number and normals
+  bool has_uv_map = true;  // nodes find `uv` as a UV map
 };
 // Returns the factor by which the node program multiplies the light's strength. `material` is an index in the scene.
 Rgb shade_light(const ShadedScene& scene, uint32_t material, const LightShadingPoint& point, const RayState& ray);

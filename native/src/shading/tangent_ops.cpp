@@ -49,7 +49,7 @@ Vec3 own_tangent(const ResourceArgs& args, const ShadeContext& c) {
     // As in Cycles the matrix of normals transforms the tangent, which rotates it on an object of non-uniform scale.
     direction = normal_to_world(c, Vec3(uv_tangent(c, args.name)));
   } else {
-    const Vec3 g = generated(c) - 0.5f;
+    const Vec3 g = (c.instance ? generated(c) : world_position(c)) - 0.5f;
     const Vec3 around[3] = {Vec3(0.0f, -g.z, g.y), Vec3(-g.z, 0.0f, g.x), Vec3(-g.y, g.x, 0.0f)};
     direction = normal_to_world(c, around[std::min(args.mode, 2u)]);
   }

@@ -23,10 +23,8 @@ Vec3 direction_from_camera(const Mat4& camera, const Vec3& v) {
 }
 
 Vec3 to_object(const ResourceArgs& args, const ShadeContext& c) {
-  const Vec3 p = world_position(c);
-  if (args.float_count >= 16) return Vec3(matrix(args.floats) * Vec4(p, 1.0f));
-  geometry::Placement storage;
-  return c.instance ? Vec3(placement_of(c, &storage).to_local * Vec4(c.position, 1.0f)) : p;
+  if (args.float_count >= 16) return Vec3(matrix(args.floats) * Vec4(world_position(c), 1.0f));
+  return local_position(c);
 }
 
 // Transforms a point of internal space, or a direction on the background, to camera space.
@@ -36,11 +34,19 @@ Vec3 to_camera(const ShadeContext& c, const Vec3& p) {
   return direction_to_camera(camera, c.is_background ? p : p - Vec3(camera[3]));
 }
 
+// Returns the point in camera space. For lights without an object, Cycles takes the position for a direction, as on the
+// background.
+Vec3 camera_coordinates(const ShadeContext& c) {
+  if (!c.light || object_of(c) || !c.scene || !c.scene->has_camera) return to_camera(c, c.position);
+  return direction_to_camera(matrix(c.scene->camera.matrix), world_position(c));
+}
+
 // Returns the position in the picture, which spans 0…1 on both axes.
 Vec3 window(const ShadeContext& c) {
   if (!c.scene || !c.scene->has_camera) return Vec3(0.0f);
   const GradusCamera& camera = c.scene->camera;
-  const Vec3 p = to_camera(c, c.position);
+  const bool is_flat = camera.type == GRADUS_CAMERA_ORTHOGRAPHIC;
+  const Vec3 p = is_flat ? to_camera(c, c.position) : camera_coordinates(c);
   Vec2 plane(p);
   if (camera.type == GRADUS_CAMERA_PERSPECTIVE) plane = p.z != 0.0f ? plane / p.z : Vec2(0.0f);
   if (camera.type == GRADUS_CAMERA_PANORAMA &&
@@ -51,7 +57,7 @@ Vec3 window(const ShadeContext& c) {
 }
 
 Vec3 uv_map(const ResourceArgs& args, const ShadeContext& c) {
-  if (!c.instance) return Vec3(c.uv, 0.0f);
+  if (!c.instance && !c.light) return Vec3(c.uv, 0.0f);
   return Vec3(Vec2(attribute_value(c, args.name, true, nullptr)), 0.0f);
 }
 
@@ -60,8 +66,7 @@ enum Space : uint32_t { kWorld = 0, kObject = 1, kCamera = 2 };
 Vec3 to_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& c) {
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
   const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
-  if (space == kObject && c.light_axes && kind != GRADUS_TRANSFORM_POINT) return *c.light_axes * v;
-  if (space == kObject && c.instance) {
+  if (space == kObject && object_of(c)) {
     geometry::Placement storage;
     const geometry::Placement& placement = placement_of(c, &storage);
     if (kind == GRADUS_TRANSFORM_NORMAL) return placement.normal_to_world * v;
@@ -77,8 +82,9 @@ Vec3 to_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& 
 Vec3 from_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext& c) {
   const float w = kind == GRADUS_TRANSFORM_POINT ? 1.0f : 0.0f;
   const Vec3 origin = c.scene ? c.scene->origin : Vec3(0.0f);
-  if (space == kObject && c.light_axes && kind != GRADUS_TRANSFORM_POINT) return glm::transpose(*c.light_axes) * v;
-  if (space == kObject && c.instance) {
+  if (space == kObject && kind == GRADUS_TRANSFORM_NORMAL && c.light && c.light->has_uv_map)
+    return normal_to_local(c, v);
+  if (space == kObject && object_of(c)) {
     geometry::Placement storage;
     const geometry::Placement& placement = placement_of(c, &storage);
     if (kind == GRADUS_TRANSFORM_NORMAL) return glm::transpose(Mat3(placement.to_world)) * v;
@@ -92,6 +98,7 @@ Vec3 from_world(uint32_t space, uint32_t kind, const Vec3& v, const ShadeContext
 }
 
 Vec3 coordinates(const ResourceArgs& args, const ShadeContext& c) {
+  const geometry::ObjectData* object = object_of(c);
   switch (args.mode) {
     case GRADUS_TEX_COORD_NORMAL:
       return normal_to_local(c, c.normal);
@@ -100,15 +107,15 @@ Vec3 coordinates(const ResourceArgs& args, const ShadeContext& c) {
     case GRADUS_TEX_COORD_OBJECT:
       return to_object(args, c);
     case GRADUS_TEX_COORD_CAMERA:
-      return to_camera(c, c.position);
+      return camera_coordinates(c);
     case GRADUS_TEX_COORD_WINDOW:
       return window(c);
     case GRADUS_TEX_COORD_REFLECTION:
-      return c.instance ? c.normal * (2.0f * glm::dot(c.wo, c.normal)) - c.wo : c.wo;
+      return object ? c.normal * (2.0f * glm::dot(c.wo, c.normal)) - c.wo : c.wo;
     case GRADUS_TEX_COORD_INSTANCER_GENERATED:
-      return c.instance ? c.instance->generated : Vec3(0.0f);
+      return object ? object->generated : Vec3(0.0f);
     case GRADUS_TEX_COORD_INSTANCER_UV:
-      return c.instance ? Vec3(c.instance->uv, 0.0f) : Vec3(0.0f);
+      return object ? Vec3(object->uv, 0.0f) : Vec3(0.0f);
     default:
       return generated(c);
   }

@@ -32,6 +32,8 @@ def rows_of(kind: str) -> Iterator[Row]:
     yield from family.rows(rna.of_part("data.cycles", rna.changes(light.cycles)))
     yield family.row(".data.node_tree", use_nodes)
     yield family.row(".scale", scale)
+    yield family.row(".scale with Normal in its nodes", partial(scale_with_nodes, "Normal"))
+    yield family.row(" instances with Random in its nodes", partial(instance_with_nodes, "Random"))
 
 
 def stage(kind: str) -> Any:
@@ -56,3 +58,31 @@ def use_nodes(light: Any) -> None:
 
 def scale(light: Any) -> None:
     light.scale = (1.5, 0.7, 1.2)
+
+
+def show_in_nodes(light: Any, kind: str, output: str) -> None:
+    """Makes the light's colour of an output of a node, without negative values."""
+    tree, last = stages.empty_tree(light.data, "ShaderNodeOutputLight")
+    source, emission = tree.nodes.new(kind), tree.nodes.new("ShaderNodeEmission")
+    absolute = tree.nodes.new("ShaderNodeVectorMath")
+    absolute.operation = "ABSOLUTE"
+    tree.links.new(next(socket for socket in source.outputs if socket.name == output), absolute.inputs[0])
+    tree.links.new(absolute.outputs[0], emission.inputs["Color"])
+    tree.links.new(emission.outputs[0], last.inputs["Surface"])
+
+
+def scale_with_nodes(output: str, light: Any) -> None:
+    scale(light)
+    show_in_nodes(light, "ShaderNodeTexCoord", output)
+
+
+def instance_with_nodes(output: str, light: Any) -> None:
+    """Shows two instances of the light in place of the light."""
+    show_in_nodes(light, "ShaderNodeObjectInfo", output)
+    light.pass_index = 2
+    instanced = bpy.data.collections.new("Instanced")
+    instanced.objects.link(light)
+    bpy.context.scene.collection.objects.unlink(light)
+    for x, color in ((-0.9, (0.8, 0.4, 0.2, 0.6)), (0.4, (0.3, 0.5, 0.9, 0.8))):
+        empty = stages.add(None, "Instancer", location=(x, 0.0, 0.0), color=color)
+        empty.instance_type, empty.instance_collection = "COLLECTION", instanced
