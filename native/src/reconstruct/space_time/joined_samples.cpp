@@ -1,5 +1,6 @@
 #include "reconstruct/space_time/joined_samples.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -9,6 +10,7 @@
 #include "base/fault.h"
 #include "reconstruct/displaced.h"
 #include "reconstruct/field_values.h"
+#include "reconstruct/regression/feature_filter.h"
 #include "reconstruct/regression/moments.h"
 #include "reconstruct/regularized.h"
 #include "reconstruct/space_time/light_test.h"
@@ -17,11 +19,12 @@ namespace gradus::reconstruct {
 namespace {
 
 // Standard deviation, in pixels, of the Gaussian weights by the displacement of a sample from the centre of its pixel,
-// in the means of own values and of features to estimate. Samples count in windows wherever they lie.
+// in the means of own values. Samples count in windows wherever they lie.
 constexpr float kReachOfCentre = 0.2f;
-// Standard deviation of these weights in the picture that a denoiser reads. It is larger, because a network sharpens
-// better than it removes noise.
-constexpr float kReachOfSampled = 0.3f;
+// Standard deviation of these weights in the features to estimate, and in the light that a denoiser reads. Both are
+// larger: features that are wrong for their pixel are better than noisy ones, and a network sharpens better than it
+// removes noise.
+constexpr float kReachOfFeatures = 0.25f, kReachOfSampled = 0.4f;
 constexpr int kAlbedoChannels = kDepth - kAlbedo;
 
 // Weights of one sample of a pixel, for each use. `share` is what the test of light keeps of it.
@@ -76,6 +79,45 @@ class LightSums {
   Lanes sums_{};
 };
 
+// Sums of the features of records, and of their squares, from which the noise of the means is estimated.
+class FeatureSums {
+ public:
+  void add(float weight, const Lanes& low, const Lanes& high) {
+    weight_ += weight;
+    squared_weight_ += weight * weight;
+    low_ += weight * low;
+    high_ += weight * high;
+    low_squares_ += weight * low * low;
+    high_squares_ += weight * high * high;
+  }
+
+  // Writes the means and their variances to pixel i of three images. The variance is that of weighted means whose terms
+  // differ by noise alone; it is 0 for a single term, which was filtered by its own noise.
+  void write(size_t i, film::Features* to) const {
+    const float unit = 1.0f / weight_, effective = unit * unit * squared_weight_;
+    const float factor = effective < 1.0f ? effective / (1.0f - effective) : 0.0f;
+    const Lanes low = unit * low_, high = unit * high_;
+    RecordValues mean, variance;
+    store(low, mean.data());
+    store(high, mean.data() + kLanes);
+    store(factor * (unit * low_squares_ - low * low), variance.data());
+    store(factor * (unit * high_squares_ - high * high), variance.data() + kLanes);
+    const auto put = [&](int first, size_t channels, film::FeatureImage* image) {
+      for (size_t c = 0; c < channels; ++c) {
+        image->values[channels * i + c] = mean[size_t(kRecordFeatures + first) + c];
+        image->variance[channels * i + c] = std::max(variance[size_t(kRecordFeatures + first) + c], 0.0f);
+      }
+    };
+    put(0, 3, &to->normal);
+    put(kAlbedo, 3, &to->albedo);
+    put(kDepth, 1, &to->depth);
+  }
+
+ private:
+  float weight_ = 0.0f, squared_weight_ = 0.0f;
+  Lanes low_{}, high_{}, low_squares_{}, high_squares_{};
+};
+
 // A moved record holds its displacement in place of the weights of a frame's record.
 constexpr int kDisplacement = kRecordWeight;
 
@@ -98,7 +140,8 @@ MovedRecord move_record(const float* record, float unit, float ratio, float dept
 
 // Sums of all samples of a pixel, for each use.
 struct PixelSums {
-  RecordSums in_windows, of_residual, features;
+  RecordSums in_windows, of_residual;
+  FeatureSums features;
   LightSums own, light;
   float variance = 0.0f;
   std::array<float, 3> products{};  // of displacements, with the weights of the residual
@@ -125,10 +168,10 @@ float nearness(const Vec2& displacement, float reach) {
 
 // Returns the weights of a sample whose record is given. `ratio`: the frame's scale in that of the picture.
 SampleWeights weigh_sample(const float* record, float ratio, float share, const Vec2& displacement) {
-  const float near = nearness(displacement, kReachOfCentre);
+  const float near = nearness(displacement, kReachOfCentre), at_centre = nearness(displacement, kReachOfFeatures);
   const float of_light = 1.0f / (ratio * ratio), weight = of_light * record[kRecordWeight];
   return {share * weight, share * of_light * record[kRecordOwnWeight] * near, share * std::sqrt(std::sqrt(weight)),
-          share * near, share};
+          share * at_centre, share};
 }
 
 // The planes of a picture's samples, which are written pixel by pixel.
@@ -137,7 +180,7 @@ struct PicturePlanes {
       : in_windows{Field(w, h, kFeatureChannels), Field(w, h, 1), Field(w, h, 2)},
         of_residual{Field(w, h, kAlbedoChannels), Field(w, h, 1), Field(w, h, kDisplacementChannels)},
         own_weights(w, h, 1),
-        estimated(w, h, kFeatureChannels),
+        estimated{w, h, image_of(w, h, 3), image_of(w, h, 3), image_of(w, h, 1)},
         mean{Field(w, h, 3), Field(w, h, 3), Field(w, h, 3)},
         half_difference{Field(w, h, 3), Field(w, h, 3), Field(w, h, 3)},
         light{Field(w, h, 1), Field(w, h, 3), Field(w, h, 1)} {}
@@ -154,7 +197,7 @@ struct PicturePlanes {
     put<kFeatureChannels>(windows.data() + kRecordFeatures, x, y, &in_windows.features);
     put<2>(windows.data() + kDisplacement, x, y, &in_windows.displacement);
     own_weights.row(y)[x] = sums.own.weight();
-    put<kFeatureChannels>(sums.features.means().data() + kRecordFeatures, x, y, &estimated);
+    sums.features.write(size_t(y) * size_t(estimated.width) + size_t(x), &estimated);
     of_residual.weights.row(y)[x] = sums.of_residual.weight();
     put<kAlbedoChannels>(residual.data() + kRecordFeatures + kAlbedo, x, y, &of_residual.features);
     const float unit = sums.of_residual.weight() > 0.0f ? 1.0f / sums.of_residual.weight() : 0.0f;
@@ -167,14 +210,23 @@ struct PicturePlanes {
     light.variance.row(y)[x] = sums.variance;
   }
 
-  PictureSamples take(Field noise) {
+  // Returns the samples, and puts the features to estimate into `features`.
+  PictureSamples take(Field noise, film::Features* features) {
+    *features = filter_features(std::move(estimated));
     const auto shared = [](auto& value) {
       return std::make_shared<const std::remove_reference_t<decltype(value)>>(std::move(value));
     };
     const auto plane = [&](std::array<Field, 3>& of) {
       return JoinedPlane{shared(of[0]), shared(of[1]), shared(of[2])};
     };
-    return {{shared(in_windows), shared(own_weights), shared(estimated)},
+    Field to_estimate(features->width, features->height, kFeatureChannels);
+    for_values(&to_estimate, [&](float& value, int x, int y, int c) {
+      const size_t i = size_t(y) * size_t(features->width) + size_t(x);
+      value = c < kAlbedo  ? features->normal.values[3 * i + size_t(c)]
+              : c < kDepth ? features->albedo.values[3 * i + size_t(c - kAlbedo)]
+                           : features->depth.values[i];
+    });
+    return {{shared(in_windows), shared(own_weights), shared(to_estimate)},
             std::move(of_residual),
             plane(mean),
             plane(half_difference),
@@ -189,8 +241,14 @@ struct PicturePlanes {
     for (int c = 0; c < Channels; ++c) to->row(y, c)[x] = from[c];
   }
 
+  static film::FeatureImage image_of(int w, int h, uint32_t channels) {
+    const size_t count = size_t(w) * size_t(h) * channels;
+    return {channels, std::vector<float>(count), std::vector<float>(count)};
+  }
+
   Predictors in_windows, of_residual;
-  Field own_weights, estimated;
+  Field own_weights;
+  film::Features estimated;
   std::array<Field, 3> mean, half_difference;  // in windows, own, of the residual
   LightOfSamples light;
 };
@@ -293,7 +351,7 @@ float sampled_value(const FrameRecords& frame, int component, int pixel, int cha
 JoinedSamples::JoinedSamples(const FrameRecords& here, std::vector<JoinedFrame> others)
     : here_(here), others_(std::move(others)) {}
 
-PictureSamples JoinedSamples::picture(const HalvedImage& image) const {
+PictureSamples JoinedSamples::picture(const HalvedImage& image, film::Features* features) const {
   const int w = here_.width, h = here_.height;
   PicturePlanes planes(w, h);
   const float unit = 1.0f / here_.scale;
@@ -321,32 +379,24 @@ PictureSamples JoinedSamples::picture(const HalvedImage& image) const {
       planes.write(x, y, sums);
     }
   });
-  return planes.take(noise_around(image));
+  return planes.take(noise_around(image), features);
 }
 
-SampledPicture JoinedSamples::sampled() const {
+SampledPicture JoinedSamples::sampled(film::Features features) const {
   const int w = here_.width, h = here_.height;
-  const size_t size = 3 * here_.pixels.size();
-  SampledPicture picture{std::vector<float>(size), std::vector<float>(size), std::vector<float>(size)};
+  SampledPicture picture{std::vector<float>(3 * here_.pixels.size()), std::move(features.albedo.values),
+                         std::move(features.normal.values)};
   for_rows(h, [&](int y) {
     const std::vector<MovedRow> rows = rows_of(others_, here_, y);
     for (int x = 0; x < w; ++x) {
-      RecordSums sums;
-      const auto add = [&](const float* record, float weight) {
-        sums.add(weight, load(record), load(record + kLanes));
-      };
-      add(here_.at(y * w + x), 1.0f);
+      LightSums sums;
+      sums.add(1.0f, load(here_.at(y * w + x)));
       for (const MovedRow& row : rows) {
         const SampleOfPixel sample = row.sample(x);
-        if (sample.record != nullptr) add(sample.record, sampled_weight(sample));
+        if (sample.record != nullptr) sums.add(sampled_weight(sample), load(sample.record));
       }
-      const RecordValues means = sums.means();
-      for (size_t c = 0; c < 3; ++c) {
-        const size_t i = 3 * (size_t(y) * size_t(w) + size_t(x)) + c;
-        picture.light[i] = means[kRecordMean + c];
-        picture.normal[i] = means[kRecordFeatures + c];
-        picture.albedo[i] = means[size_t(kRecordFeatures + kAlbedo) + c];
-      }
+      const std::array<float, kLanes> means = sums.means();
+      std::copy_n(means.begin() + kRecordMean, 3, picture.light.begin() + 3 * (ptrdiff_t(y) * w + x));
     }
   });
   return picture;

@@ -23,10 +23,12 @@ class JoinedSamples {
   // `here` is the picture's own frame. It and the samples of the others must outlive the object.
   JoinedSamples(const FrameRecords& here, std::vector<JoinedFrame> others);
 
-  // Returns what the picture's regression reads, in units of the picture. `image` is that of its own frame.
-  PictureSamples picture(const HalvedImage& image) const;
-  // Returns the means of light and features near the centres of pixels. Light is in the units of the film.
-  SampledPicture sampled() const;
+  // Returns what the picture's regression reads, in units of the picture. `image` is that of its own frame. `features`
+  // receives the features of the pixels to estimate: the means near the centres of pixels, filtered by the noise that
+  // the frames show. Their depth is relative (feature_regression.h).
+  PictureSamples picture(const HalvedImage& image, film::Features* features) const;
+  // Returns the mean light near the centres of pixels, in the units of the film, with these features.
+  SampledPicture sampled(film::Features features) const;
   // Returns the means of the terms of all frames with the same weights. read(number) returns those of a frame, `own`
   // are those of the picture's own frame. Light without noise stays as it is there. Frames that have another number of
   // terms are left out.

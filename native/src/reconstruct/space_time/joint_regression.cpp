@@ -81,7 +81,8 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
   HalvedImage image = image_of(here);
   const JoinedSamples joined(here, move_frames(number, image, numbers, cancel));
   if (cancel()) return {};
-  PictureSamples samples = joined.picture(image);
+  film::Features features;
+  PictureSamples samples = joined.picture(image, &features);
   const std::shared_ptr<const film::Film> film = here.has_differences ? open_film_(number, cancel) : nullptr;
   Reconstructed result =
       regularize(film.get(),
@@ -89,7 +90,7 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
                   [&](int component, int first, const Field& own) { return joined.join(component, first, own); },
                   components_of(here), wanted.components},
                  cancel, report);
-  if (wanted.sampled) result.sampled = std::make_shared<const SampledPicture>(joined.sampled());
+  if (wanted.sampled) result.sampled = std::make_shared<const SampledPicture>(joined.sampled(std::move(features)));
   if (wanted.terms) {
     const auto read_terms = [&](int other) { return wanted.terms(*open_film_(other, cancel)); };
     result.sampled_terms = std::make_shared<const SampledTerms>(joined.sampled(read_terms(number), read_terms));

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "path/sampler.h"
 #include "reconstruct/feature_film.h"
 #include "reconstruct/regularized.h"
 #include "reconstruct/space_time/sequences.h"
@@ -35,6 +36,7 @@ struct Shot {
   float sigma = 0.4f;
   unsigned seed = 1;
   std::optional<float> pan{};  // pixels per frame of a moving picture; none: a static room
+  float feature_noise = 0.0f;  // amplitude, of a static room; both halves have the same
   float ramp = 0.0f;           // increase of the light per pixel of a moving picture that no feature describes
   std::function<float(int t)> light = [](int) { return 1.0f; };
   std::function<int(int t)> stream = [](int t) { return t; };
@@ -50,6 +52,12 @@ struct Shot {
       });
       picture.feature = [=](int x, int y, int channel, int) {
         return moving_feature(slope > 0.0f ? 0.0f : float(x) - moved, slope > 0.0f ? 0 : y, channel);
+      };
+    }
+    if (feature_noise > 0.0f) {
+      picture.feature = [clean = picture.feature, amplitude = feature_noise, t](int x, int y, int channel, int half) {
+        const uint32_t random = path::combine(path::combine(uint32_t(t), uint32_t(channel)), uint32_t(y * kWidth + x));
+        return clean(x, y, channel, half) + amplitude * (float(random) / 4294967296.0f - 0.5f);
       };
     }
     for (float& v : picture.truth) v *= light(t);
@@ -154,6 +162,28 @@ TEST(B2_JointRegression, ReturnsTheJoinedSamples) {
   reconstruct::SolveReport report;
   reconstruct::JointRegression single = shot.regression();
   EXPECT_EQ(single.reconstruct(0, shot.all(), never, &report, {.sampled = true}).sampled, nullptr);
+}
+
+// At an edge both halves of a frame may agree by chance, so that a frame by itself shows no noise in its features. The
+// frames differ, and the features are filtered by what they differ.
+TEST(B2_JointRegression, FiltersFeaturesByTheNoiseThatFramesShow) {
+  Shot shot;
+  shot.feature_noise = 0.2f;
+  reconstruct::SolveReport report;
+  reconstruct::JointRegression regression = shot.regression();
+  const auto picture = regression.reconstruct(kMiddle, shot.all(), never, &report, {.sampled = true}).sampled;
+  shot.feature_noise = 0.0f;
+  const FeatureFilm truth = shot.description(kMiddle);
+  double squares = 0.0;
+  for (int i = 0; i < kWidth * kHeight; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const double error = picture->albedo[size_t(3 * i + c)] - truth.feature(i % kWidth, i / kWidth, 3 + c, 0);
+      squares += error * error / (3 * kWidth * kHeight);
+    }
+  }
+  const double of_one = 0.2 * 0.2 / 12.0;
+  std::printf("  variance over that of a frame: %.4f, of means %.4f\n", squares / of_one, 1.0 / kFrames);
+  EXPECT_LT(squares / of_one, 0.5 / kFrames);
 }
 
 // Terms such as light passes are joined as the light is. Those without noise stay as the picture's frame has them.
