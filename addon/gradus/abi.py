@@ -612,6 +612,7 @@ class Settings(Struct):
         ("alpha_threshold", c_float),
         ("use_sky", c_uint32),
         ("one_more_transparent", c_uint32),
+        ("background_motion", c_uint32),
         ("independent_sampler", c_uint32),
         ("passes", c_uint64),
         ("first_sample", c_uint32),

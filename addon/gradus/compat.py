@@ -85,6 +85,11 @@ def has_one_more_transparent() -> bool:
     return VERSION < (5, 0, 0)
 
 
+def has_background_motion() -> bool:
+    """Returns whether the pass Vector of Cycles has the motion of the background, as from 5.2 on."""
+    return VERSION >= (5, 2, 0)
+
+
 def fixed_threads(render: Any) -> int:
     """Returns the number of threads that the scene sets, or 0 for all."""
     return render.threads if render.threads_mode == "FIXED" else 0

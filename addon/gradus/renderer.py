@@ -112,6 +112,7 @@ def native_settings(
     result.use_sky = view_layer.use_sky
     result.alpha_threshold = view_layer.pass_alpha_threshold
     result.one_more_transparent = compat.has_one_more_transparent()
+    result.background_motion = compat.has_background_motion()
     result.threads = overrides.threads or compat.fixed_threads(scene.render)
     for name, text in overrides.native:
         library.settings_parse(byref(result), native.text(name), native.text(text))

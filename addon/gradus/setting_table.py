@@ -533,6 +533,7 @@ ROWS: tuple[dict[str, Any], ...] = (
 
 TEST_SWITCHES = (
     "one_more_transparent",
+    "background_motion",
     "independent_sampler",
     "first_sample",
 )

@@ -343,6 +343,13 @@ def _orbit(scene: bpy.types.Scene) -> None:
     key(scene.camera.data, "lens", {0: 20.0, 10: 120.0})
 
 
+def _shift(scene: bpy.types.Scene) -> None:
+    glowing(recording.add(recording.grid(1, 1.0), "Left", (-1, 0, 0)))
+    scene.camera.data.type = "PERSP"
+    for name in ("shift_x", "shift_y"):
+        key(scene.camera.data, name, {0: -0.5, 10: 0.5})
+
+
 def _instances(scene: bpy.types.Scene) -> None:
     collection = bpy.data.collections.new("Parts")
     part = bpy.data.objects.new("Part", recording.grid(1, 0.5))
@@ -366,6 +373,7 @@ SCENES = {
     "turning": _turning,
     "deforming": _deforming,
     "orbit": _orbit,
+    "shift": _shift,
     "instances": _instances,
     "velocities": _velocities,
 }

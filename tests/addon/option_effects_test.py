@@ -199,7 +199,9 @@ def outcome(room: bpy.types.Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPat
     It returns the picture, the stats, the files and the error.
     """
     runs = itertools.count()
-    monkeypatch.setattr(compat, "has_one_more_transparent", lambda: False)  # which this option may then change
+    # Options whose default is that of the Blender may then be moved.
+    monkeypatch.setattr(compat, "has_one_more_transparent", lambda: False)
+    monkeypatch.setattr(compat, "has_background_motion", lambda: True)
 
     def make(option: dict[str, Any], source: str = "") -> dict[str, Any]:
         folder = tmp_path / f"run{next(runs)}"
@@ -237,6 +239,11 @@ def prepare(scene: bpy.types.Scene, option: dict[str, Any]) -> None:
         scene.render.film_transparent = True
         bpy.data.objects["Floor"].hide_render = True
         bpy.data.materials["Pane"].node_tree.nodes["Glass BSDF"].inputs["Roughness"].default_value = 0.05
+    if option["name"] == "background_motion":  # the outline of the floor before the world
+        bpy.data.objects["Floor"].scale = (0.3, 0.3, 0.3)
+        key(bpy.data.objects["Floor"], "location", {0: (-0.2, 0.0, 0.0), 2: (0.2, 0.0, 0.0)})
+        scene.view_layers[0].use_pass_vector = True
+        scene.frame_set(1)
     if option["name"] == "strict":
         add_missing_image()
     if option.get("shown") in ("animation", "motion blur"):

@@ -233,6 +233,16 @@ def view_state(view: ViewOverride) -> CameraState:
     return CameraState(tuple(view.matrix), view.window, kind, view.clip, projection=view.projection)
 
 
+def _zoomed(window: panorama.Window, key: panorama.Window) -> panorama.Window:
+    """Returns a window as wide and as tall as another one, with its own shift.
+
+    As in Cycles, the shift does not move while the shutter is open.
+    """
+    left, right, bottom, top = window
+    x, y = (key[1] - key[0]) / (right - left), (key[3] - key[2]) / (top - bottom)
+    return (x * left, x * right, y * bottom, y * top)
+
+
 def fill_camera(
     now: CameraState,
     previous: CameraState | None = None,
@@ -271,7 +281,7 @@ def fill_camera(
     if shutter is None:
         return struct, []
     matrices = array("f", [value for state in keys for value in state.matrix])
-    windows = array("f", [value for state in keys for value in state.window])
+    windows = array("f", [value for state in keys for value in _zoomed(now.window, state.window)])
     struct.shutter_open, struct.shutter_close = shutter.open, shutter.close
     struct.shutter_curve_count = len(shutter.curve or ())
     struct.shutter_curve = native.pointer(shutter.curve)

@@ -662,6 +662,9 @@ typedef struct GradusSettings {
   uint32_t one_more_transparent;    /* Paths, but not shadow rays, pass one transparent surface more than
                                        `transparent_max_bounces`, as in Cycles before Blender 5.0. Blender's version
                                        gives the default. */
+  uint32_t background_motion;       /* Pass Vector has the motion of the background, too, as in Cycles from Blender
+                                       5.2 on. Off: it is 0 where a pixel shows nothing else, and outlines have the
+                                       full motion of their surface. Blender's version gives the default. */
   uint32_t independent_sampler;     /* Takes independent random numbers in place of Owen-scrambled Sobol points, for
                                        statistical tests. It is noisier. */
   uint64_t passes;                  /* Bit i asks for pass i of GradusPass. Combined is always made. */

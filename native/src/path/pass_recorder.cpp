@@ -211,7 +211,7 @@ void PassRecorder::escaped(const PathState& state) {
     return;
   }
   for (const uint32_t pass : kFirstSurfaceData) add(pass, Vec4(0.0f));
-  if (plane(GRADUS_PASS_VECTOR) != nullptr) {
+  if (plane(GRADUS_PASS_VECTOR) != nullptr && context_.settings.background_motion != 0) {
     background_motion(state.ray.ray.direction);
   }
 }
@@ -316,6 +316,8 @@ void PassRecorder::motion(const Vertex& vertex) {
 }
 
 void PassRecorder::background_motion(const Vec3& direction) {
+  // All pixels of an orthographic camera see the sky in the same direction, so that it does not move on the film.
+  if (context_.scene.camera.type == GRADUS_CAMERA_ORTHOGRAPHIC) return add(GRADUS_PASS_VECTOR, Vec4(0.0f));
   add_motion([&](Moment moment, Vec2* film) { return context_.camera.project_direction(direction, moment, film); });
 }
 

@@ -281,6 +281,7 @@ constexpr FieldLayout kSettingsFields[] = {
     FIELD(GradusSettings, alpha_threshold),
     FIELD(GradusSettings, use_sky),
     FIELD(GradusSettings, one_more_transparent),
+    FIELD(GradusSettings, background_motion),
     FIELD(GradusSettings, independent_sampler),
     FIELD(GradusSettings, passes),
     FIELD(GradusSettings, first_sample),

@@ -132,6 +132,10 @@ constexpr Option kOptions[] = {
     OPTION(one_more_transparent, GRADUS_OPTION_BOOL, 0, 0, 1, {}, true,
            "Paths, but not shadow rays, pass one transparent surface more than `transparent_max_bounces`, as in "
            "Cycles before Blender 5.0. Blender's version gives the default."),
+    OPTION(background_motion, GRADUS_OPTION_BOOL, 1, 0, 1, {}, true,
+           "Pass Vector has the motion of the background, too, as in Cycles from Blender 5.2 on. Off: it is 0 where a"
+           " pixel shows nothing else, and outlines have the full motion of their surface. Blender's version gives "
+           "the default."),
     OPTION(independent_sampler, GRADUS_OPTION_BOOL, 0, 0, 1, {}, true,
            "Takes independent random numbers in place of Owen-scrambled Sobol points, for statistical tests. It is "
            "noisier."),
