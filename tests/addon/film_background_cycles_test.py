@@ -146,7 +146,7 @@ def test_light_passes(name: str, stage: bpy.types.Scene, tmp_path: Path) -> None
     for names in (("Combined",), *PASSES):
         if "glass" in name and "Glossy Direct" in names:
             continue  # a quotient by a colour to which all sides of the glass add
-        # From 5.2 on the colour of rough glass is 7 % brighter than in Cycles, and of clear glass 2 %; why is not known.
+        # From 5.2 on the colour of rough glass differs from Cycles by 7 %, of clear glass by 2 %; why is not known.
         is_apart = bpy.app.version >= (5, 2, 0) and "glass" in name and "TransCol" in names
         compare(pass_of(expected, names), pass_of(found, names), names[0], 0.03 if is_apart else 0.006)
 
