@@ -1,6 +1,7 @@
 // Light passes beside a reconstructed picture: they have as little noise as the picture, and add up to it.
 #include "output/light_passes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -58,10 +59,17 @@ TEST_P(LightPassesBy, AddUpBesideComponents) {
   expect_to_add_up(*rendered(Scenario::Glass, settings));
 }
 
+// The pass Environment has the world behind the film, which is not in Combined.
 TEST_P(LightPassesBy, AddUpOnATransparentFilm) {
   GradusSettings settings = settings_for(GetParam());
   settings.film_transparent = 1;
-  expect_to_add_up(*rendered(Scenario::World, settings));
+  const auto render = rendered(Scenario::World, settings);
+  const std::vector<float> environment = read(*render, GRADUS_PASS_ENVIRONMENT);
+  EXPECT_GT(*std::max_element(environment.begin(), environment.end()), 0.1f);
+  const auto read_seen = [&](uint32_t pass) {
+    return pass == GRADUS_PASS_ENVIRONMENT ? std::vector<float>(environment.size(), 0.0f) : read(*render, pass);
+  };
+  test::expect_light_to_add_up(read_seen, read(*render, GRADUS_PASS_COMBINED));
 }
 
 // The stand-in adds light everywhere, also where there was none.
