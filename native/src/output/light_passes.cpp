@@ -36,8 +36,9 @@ const film::Channel* hidden_light(const film::Film& film) {
 
 LightPassPlanes light_planes(const film::Film& film) {
   LightPassPlanes planes;
+  const film::Channel* const hidden = hidden_light(film);
   for (const film::Channel& plane : film.channels) {
-    if (schema::has_bit(schema::light_passes(), plane.pass) && &plane != hidden_light(film)) planes.push_back(&plane);
+    if (schema::has_bit(schema::light_passes(), plane.pass) && &plane != hidden) planes.push_back(&plane);
   }
   return planes;
 }
@@ -206,8 +207,9 @@ SplitLight split_light(const film::Film& film, const Region& region, const std::
   const reconstruct::Field whole = to_field(rgba, 4, region, region);
   const Guides guides(film, region, whole);
   SplitLight result;
-  reconstruct::Field with_hidden = whole;
+  reconstruct::Field with_hidden;
   if (hidden_light(film) != nullptr) {
+    with_hidden = whole;
     const reconstruct::PictureTerm hidden =
         make_term(film, region, guides.shared(), std::move(sampled.light.back()), cancel);
     for_values(&with_hidden, [&](float& value, int x, int y, int c) { value += hidden.image.row(y, c)[x]; });
