@@ -186,7 +186,7 @@ Rgb light_emission(const LitScene& scene, const AnalyticLight& light, const Ligh
                    const LightEvaluation& view) {
   if (light.material == UINT32_MAX || is_black(view.radiance)) return Rgb(1.0f);
   shading::LightShadingPoint at;
-  // As in Cycles, the position of a sun is the direction in which it shines.
+  // As in Cycles, the position of a sun is the direction of its light.
   at.position = light.at_infinity() ? -view.direction - scene.origin : point.position;
   // In Cycles every point of a disk that faces its receiver has a normal of its own, towards the receiver.
   const bool faces_receiver = point.normal == Vec3(0.0f) || light.shape == AnalyticLight::Shape::FacingDisk;

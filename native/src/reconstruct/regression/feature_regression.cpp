@@ -239,9 +239,8 @@ Field regression_features(const film::Features& features, float unit) {
   for_values(&basis, [&](float& value, int x, int y, int c) {
     const int column = GRADUS_FAULT(features_shifted_by_a_column) ? std::min(x + 1, features.width - 1) : x;
     const size_t i = size_t(y) * size_t(features.width) + size_t(column);
-    value = c < kAlbedo  ? bounded(features.normal.values[3 * i + size_t(c)])
-            : c < kDepth ? bounded(features.albedo.values[3 * i + size_t(c - kAlbedo)])
-                         : relative_depth(features.depth.values[i], unit);
+    const float sampled = feature_value(features, i, c);
+    value = c < kDepth ? bounded(sampled) : relative_depth(sampled, unit);
     if (!is_finite(value)) value = 0.0f;
   });
   return basis;

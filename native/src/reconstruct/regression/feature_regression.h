@@ -40,6 +40,12 @@ struct PictureSamples {
 
 // Channels of the features of a regression: normal, albedo and depth.
 inline constexpr int kAlbedo = 3, kDepth = 6, kFeatureChannels = 7;
+// Returns a channel of a pixel's features as they are.
+inline float feature_value(const film::Features& features, size_t pixel, int channel) {
+  return channel < kAlbedo  ? features.normal.values[3 * pixel + size_t(channel)]
+         : channel < kDepth ? features.albedo.values[3 * pixel + size_t(channel - kAlbedo)]
+                            : features.depth.values[pixel];
+}
 // Returns normal, albedo, and d/(d + unit) of the depth d.
 Field regression_features(const film::Features& features, float unit);
 // Returns the typical depth: the median of the finite, positive ones; 1 if there are none.

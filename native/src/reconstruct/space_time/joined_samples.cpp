@@ -22,8 +22,8 @@ namespace {
 // in the means of own values. Samples count in windows wherever they lie.
 constexpr float kReachOfCentre = 0.2f;
 // Standard deviation of these weights in the features to estimate, and in the light that a denoiser reads. Both are
-// larger: features that are wrong for their pixel are better than noisy ones, and a network sharpens better than it
-// removes noise.
+// larger: features that are a little blurred are better than noisy ones, and a network sharpens better than it removes
+// noise.
 constexpr float kReachOfFeatures = 0.25f, kReachOfSampled = 0.4f;
 constexpr int kAlbedoChannels = kDepth - kAlbedo;
 
@@ -221,10 +221,7 @@ struct PicturePlanes {
     };
     Field to_estimate(features->width, features->height, kFeatureChannels);
     for_values(&to_estimate, [&](float& value, int x, int y, int c) {
-      const size_t i = size_t(y) * size_t(features->width) + size_t(x);
-      value = c < kAlbedo  ? features->normal.values[3 * i + size_t(c)]
-              : c < kDepth ? features->albedo.values[3 * i + size_t(c - kAlbedo)]
-                           : features->depth.values[i];
+      value = feature_value(*features, size_t(y) * size_t(features->width) + size_t(x), c);
     });
     return {{shared(in_windows), shared(own_weights), shared(to_estimate)},
             std::move(of_residual),
