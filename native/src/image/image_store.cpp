@@ -1,5 +1,7 @@
 #include "image/image_store.h"
 
+#include <set>
+
 #include "image/coarser_tile.h"
 #include "image/image.h"
 
@@ -54,7 +56,8 @@ std::vector<std::string> ImageStore::warnings() const {
 
 size_t ImageStore::memory_bytes() const {
   size_t sum = 0;
-  for (const auto& image : images_) {
+  // Several keys may share an image.
+  for (const auto& image : std::set(images_.begin(), images_.end())) {
     for (const ImageTile& tile : image->tiles) {
       sum += tile.size_bytes() + chain_bytes(tile.coarser.get());
       if (tile.coarser_straight != tile.coarser) {

@@ -7,9 +7,11 @@
 // u runs to the right, v up: v = 0 is the bottom edge, whatever the order of rows in a file.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
@@ -33,12 +35,15 @@ struct ImageSource {
     uint32_t height = 0;
     std::string path;
     std::vector<uint8_t> data;
+    auto operator<=>(const Tile&) const = default;
   };
   uint32_t alpha_mode = GRADUS_ALPHA_STRAIGHT;
   bool is_float = false;
   std::string color_space;
   std::string name;
   std::vector<Tile> tiles;
+  // Returns all that the pixels depend on, to be compared: all but the name.
+  auto content() const { return std::tie(alpha_mode, is_float, color_space, tiles); }
 };
 // Copies an image. Throws Error(INVALID_ARGUMENT), with the image's name, if sizes and data contradict each other.
 ImageSource copy_image_source(const GradusImage& desc);

@@ -1,5 +1,8 @@
 // Loading of images and compilation of materials in a commit. Unchanged ones are reused from the previous commit.
+#include <map>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <tbb/parallel_for.h>
 
@@ -13,13 +16,28 @@ namespace gradus::scene {
 
 namespace {
 
-// Decodes new images in parallel.
+// New images whose pixels are equal.
+using EqualImages = std::vector<LoadedImage*>;
+
+// Decodes images. All share the same pixels, unless warnings name the images that they come from.
+void load_equal(const EqualImages& images, const image::ColorManager& color) {
+  std::shared_ptr<const image::Image> shared;
+  for (LoadedImage* image : images) {
+    image->image = shared ? shared : image::load_image(image->source, color);
+    if (image->image->warnings.empty()) shared = image->image;
+  }
+}
+
+// Decodes new images in parallel. They share no pixels with those that are there, whose files may have changed since.
 void load_new_images(Device& device, Scene::State* state, const CommitMonitor& monitor) {
-  std::vector<LoadedImage*> pending;
+  using Content = decltype(std::declval<const image::ImageSource>().content());
+  std::map<Content, EqualImages> by_content;
   for (auto& [key, image] : state->images)
-    if (!image.image) pending.push_back(&image);
+    if (!image.image) by_content[image.source.content()].push_back(&image);
+  std::vector<const EqualImages*> pending;
+  for (const auto& [content, images] : by_content) pending.push_back(&images);
   tbb::parallel_for(size_t(0), pending.size(), [&](size_t i) {
-    if (monitor.is_running()) pending[i]->image = image::load_image(pending[i]->source, device.color());
+    if (monitor.is_running()) load_equal(*pending[i], device.color());
   });
   monitor.check();
 }
