@@ -44,7 +44,7 @@ def is_clamped(scene: Any) -> bool:
     return any(getattr(owner, key) > 0.0 for owner, key in owners)
 
 
-def bias(settings: Any, samples: int, is_clamped: bool) -> tuple[str, str]:
+def bias(settings: Any, samples: int, clamped: bool) -> tuple[str, str]:
     """Returns a text about the bias of the settings, and its icon.
 
     Only the render finds out whether there is a denoiser.
@@ -58,7 +58,7 @@ def bias(settings: Any, samples: int, is_clamped: bool) -> tuple[str, str]:
         return "Biased if a denoiser is found", "INFO"
     if settings.use_temporal and method.denoised_from < math.inf:
         return "Consistent; biased in animations if a denoiser is found", "INFO"
-    if is_clamped:
+    if clamped:
         return "Biased by clamping", "INFO"
     if method.reconstruction in ("L1", "REGULARIZED"):
         return "Consistent", "INFO"

@@ -83,29 +83,22 @@ class LightSums {
 class FeatureSums {
  public:
   void add(float weight, const Lanes& low, const Lanes& high) {
-    weight_ += weight;
+    values_.add(weight, low, high);
+    squares_.add(weight, low * low, high * high);
     squared_weight_ += weight * weight;
-    low_ += weight * low;
-    high_ += weight * high;
-    low_squares_ += weight * low * low;
-    high_squares_ += weight * high * high;
   }
 
   // Writes the means and their variances to pixel i of three images. The variance is that of weighted means whose terms
   // differ by noise alone; it is 0 for a single term, which was filtered by its own noise.
   void write(size_t i, film::Features* to) const {
-    const float unit = 1.0f / weight_, effective = unit * unit * squared_weight_;
+    const float effective = squared_weight_ / (values_.weight() * values_.weight());
     const float factor = effective < 1.0f ? effective / (1.0f - effective) : 0.0f;
-    const Lanes low = unit * low_, high = unit * high_;
-    RecordValues mean, variance;
-    store(low, mean.data());
-    store(high, mean.data() + kLanes);
-    store(factor * (unit * low_squares_ - low * low), variance.data());
-    store(factor * (unit * high_squares_ - high * high), variance.data() + kLanes);
+    const RecordValues mean = values_.means(), square = squares_.means();
     const auto put = [&](int first, size_t channels, film::FeatureImage* image) {
       for (size_t c = 0; c < channels; ++c) {
-        image->values[channels * i + c] = mean[size_t(kRecordFeatures + first) + c];
-        image->variance[channels * i + c] = std::max(variance[size_t(kRecordFeatures + first) + c], 0.0f);
+        const size_t of_record = size_t(kRecordFeatures + first) + c, of_image = channels * i + c;
+        image->values[of_image] = mean[of_record];
+        image->variance[of_image] = std::max(factor * (square[of_record] - mean[of_record] * mean[of_record]), 0.0f);
       }
     };
     put(0, 3, &to->normal);
@@ -114,8 +107,8 @@ class FeatureSums {
   }
 
  private:
-  float weight_ = 0.0f, squared_weight_ = 0.0f;
-  Lanes low_{}, high_{}, low_squares_{}, high_squares_{};
+  RecordSums values_, squares_;
+  float squared_weight_ = 0.0f;
 };
 
 // A moved record holds its displacement in place of the weights of a frame's record.
