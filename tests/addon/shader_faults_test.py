@@ -60,11 +60,22 @@ def test_rough_refraction_is_named(kind: str) -> None:
     assert warnings("BsdfPrincipled", {"Roughness": 0.6}) == ""
 
 
+def bumped(graph: Graph) -> bpy.types.NodeSocket:
+    return graph("Bump", "Normal", {"Height": noise(graph)})
+
+
+@pytest.mark.parametrize("kind", ["BsdfGlass", "BsdfRefraction", "BsdfPrincipled"])
+def test_bumps_of_refraction_are_named_before_4(kind: str) -> None:
+    transmission = "Transmission Weight" if VERSION >= (4, 0, 0) else "Transmission"
+    given = {transmission: 1.0} if kind == "BsdfPrincipled" else {}
+    given["Roughness"] = 0.2
+    assert warnings(kind, given) == ""
+    assert ("has bumps" in warnings(kind, given | {"Normal": bumped})) == (VERSION < (4, 0, 0))
+    assert warnings("BsdfPrincipled", {"Roughness": 0.2, "Normal": bumped}) == ""
+
+
 @pytest.mark.skipif(VERSION >= (4, 0, 0), reason="velvet became the node Sheen")
 def test_bumps_of_velvet_are_named() -> None:
-    def bumped(graph: Graph) -> bpy.types.NodeSocket:
-        return graph("Bump", "Normal", {"Height": noise(graph)})
-
     assert warnings("BsdfVelvet", {}) == ""
     assert "has bumps" in warnings("BsdfVelvet", {"Normal": bumped})
 

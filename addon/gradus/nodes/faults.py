@@ -58,11 +58,15 @@ def _largest_alpha(roughness: Value, anisotropy: Value) -> float:
 
 
 def warn_of_refraction(view: NodeView, *roughnesses: Value) -> None:
-    """Warns of rough refraction, of which any of the roughnesses varies or is large.
+    """Warns of rough refraction, of which any of the roughnesses varies or is large, and of bumps before Blender 4.0.
 
     Where Cycles samples lights, it counts directions into which no microfacet refracts. With lights that only rays
     find, its pictures are those of Gradus.
     """
+    if view.is_linked("Normal") and view.version < (4, 0, 0):
+        view.warn_replaced(
+            "has bumps: where they are steep, Cycles before Blender 4.0 refracts light from the viewer's side, too"
+        )
     if any(not value.is_constant or value.constant[0] > _ROUGH_GLASS for value in roughnesses):
         view.warn_replaced(
             "refracts roughly: lights behind it are up to 7 % brighter in Cycles, which counts directions, too, "
