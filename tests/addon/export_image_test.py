@@ -239,7 +239,8 @@ def test_tiles_in_formats_that_only_blender_reads(scene: bpy.types.Scene, tmp_pa
 def test_tiled_image_that_was_never_saved(scene: bpy.types.Scene) -> None:
     block = bpy.data.images.new("Unsaved", 4, 4, tiled=True)
     block.pixels.foreach_set([0.0, 1.0, 0.0, 1.0] * 16)
-    assert _color(_state(block), 1001) == pytest.approx((0.0, 1.0, 0.0), abs=0.02)
+    number = 0 if bpy.app.version < (4, 4, 0) else 1001  # before, Cycles repeats a single tile
+    assert _color(_state(block), number) == pytest.approx((0.0, 1.0, 0.0), abs=0.02)
 
 
 _MODE_DECIDES = bpy.app.version >= (5, 2, 0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import bpy
@@ -60,11 +61,30 @@ def test_rough_refraction_is_named(kind: str) -> None:
     assert warnings("BsdfPrincipled", {"Roughness": 0.6}) == ""
 
 
+def bumped(graph: Graph) -> bpy.types.NodeSocket:
+    return graph("Bump", "Normal", {"Height": noise(graph)})
+
+
+@pytest.mark.parametrize("kind", ["BsdfGlass", "BsdfRefraction", "BsdfPrincipled"])
+def test_normals_of_refraction_are_named_before_4(kind: str) -> None:
+    def slanted(graph: Graph) -> bpy.types.NodeSocket:
+        return graph("VectorMath", "Vector", {"Vector": graph("NewGeometry", "Normal")}, operation="ABSOLUTE")
+
+    def mapped(space: str) -> Callable[[Graph], bpy.types.NodeSocket]:
+        return lambda graph: graph("NormalMap", "Normal", {"Color": noise(graph)}, space=space)
+
+    transmission = "Transmission Weight" if VERSION >= (4, 0, 0) else "Transmission"
+    given = {transmission: 1.0} if kind == "BsdfPrincipled" else {}
+    given["Roughness"] = 0.2
+    for normal in (bumped, mapped("TANGENT")):
+        assert warnings(kind, given | {"Normal": normal}) == ""
+    for normal in (slanted, mapped("OBJECT")):
+        assert ("viewer's side" in warnings(kind, given | {"Normal": normal})) == (VERSION < (4, 0, 0))
+        assert warnings("BsdfPrincipled", {"Roughness": 0.2, "Normal": normal}) == ""
+
+
 @pytest.mark.skipif(VERSION >= (4, 0, 0), reason="velvet became the node Sheen")
 def test_bumps_of_velvet_are_named() -> None:
-    def bumped(graph: Graph) -> bpy.types.NodeSocket:
-        return graph("Bump", "Normal", {"Height": noise(graph)})
-
     assert warnings("BsdfVelvet", {}) == ""
     assert "has bumps" in warnings("BsdfVelvet", {"Normal": bumped})
 

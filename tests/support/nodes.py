@@ -16,7 +16,7 @@ class Resources:
         self.images: list[Any] = []
         self.aovs: dict[str, int] = {}
 
-    def image(self, image: Any, image_user: Any) -> int:
+    def image(self, image: Any, image_user: Any, is_boxed: bool = False) -> int:
         if image not in self.images:
             self.images.append(image)
         return self.images.index(image) + 1

@@ -10,6 +10,7 @@ import os
 import random
 import sys
 import zlib
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 import bpy
@@ -146,6 +147,33 @@ def test_the_document_is_read_as_it_was_written(tmp_path: Path) -> None:
     assert again.verdicts("bpy45") == {"B": "not shown"}
     again.forget("bpy52")
     assert again.verdicts("bpy52") == {}
+
+
+def test_shares_are_of_what_can_be_shown() -> None:
+    table = document.Document()
+    rows = {
+        "A": AGREES,
+        "B": NO_EFFECT,
+        "C": FALLS_BACK,
+        "D": DIFFERS,
+        "E": "not shown",
+        "ShaderNodeVolumeScatter.inputs[Color]": FALLS_BACK,
+        "ShaderNodeOutputWorld.inputs[Volume]": FALLS_BACK,
+        "Particles HAIR PATH": FALLS_BACK,
+        "ShaderNodeBsdfHair.mute": AGREES,
+    }
+    for name, verdict in rows.items():
+        table.put("bpy52", {"family": "Rows", "name": name, "verdict": verdict, "note": ""})
+    assert table.share("bpy52") == 3 / 8
+    assert table.share("bpy52", document.UNSUPPORTED) == 2 / 4
+    assert "| **share** | 37.5% | of all lines" in table.text()
+    assert "| **share** | 50.0% | of lines" in table.text()
+
+
+def test_unsupported_rows_exist() -> None:
+    """A renamed row would otherwise count as one that Gradus should render."""
+    names = document.read().verdicts("bpy45")
+    assert all(any(fnmatchcase(name, pattern) for name in names) for pattern in document.UNSUPPORTED)
 
 
 def test_each_other_value_is_a_row() -> None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Collection
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +25,20 @@ VERDICTS = {
     "fails": "Gradus crashes, hangs or stops with an error of no clear meaning",
     "not shown": "the scene cannot be made, or Cycles cannot render it",
 }
+
+AGREEMENT = frozenset({"agrees", "no effect"})
+
+UNSUPPORTED = (
+    "ShaderNodeVolume*",
+    "ShaderNodeOutput*.inputs[[]Volume]",
+    "ShaderNodeBsdfHair*",
+    "ShaderNodeTexPointDensity*",
+    "Object type CURVES",
+    "Object type POINTCLOUD",
+    "Object type VOLUME",
+    "Particles HAIR PATH",
+)
+"""Names of rows about volumes, hair, curves and points, which Gradus does not render."""
 
 HEAD = """# What Gradus renders as Cycles does
 
@@ -66,6 +82,15 @@ class Document:
             if host in by_host
         }
 
+    def share(self, host: str, left_out: Collection[str] = ()) -> float:
+        """Returns the share of rows that agree, of those that can be shown. left_out: patterns of names."""
+        shown = [
+            verdict
+            for name, verdict in self.verdicts(host).items()
+            if verdict != "not shown" and not any(fnmatchcase(name, pattern) for pattern in left_out)
+        ]
+        return sum(verdict in AGREEMENT for verdict in shown) / max(len(shown), 1)
+
     def text(self) -> str:
         hosts = [host for host in HOSTS if self.verdicts(host)]
         notes = Notes()
@@ -82,6 +107,12 @@ class Document:
             numbers = " | ".join(str(counts[host][verdict]) for host in hosts)
             lines.append(f"| {verdict} | {numbers} | {meaning} |")
         lines.append(f"| **all** | {' | '.join(str(sum(counts[host].values())) for host in hosts)} | |")
+        for left_out, rows in (
+            ((), "all lines"),
+            (UNSUPPORTED, "lines that are not about volumes, hair, curves or points"),
+        ):
+            shares = " | ".join(f"{self.share(host, left_out):.1%}" for host in hosts)
+            lines.append(f"| **share** | {shares} | of {rows}, those that agree, among those that can be shown |")
         return "\n".join(lines) + "\n"
 
 

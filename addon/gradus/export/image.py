@@ -27,6 +27,11 @@ _ALPHA = {"STRAIGHT": STRAIGHT, "PREMUL": PREMULTIPLIED, "CHANNEL_PACKED": CHANN
 # multiplied those of floats never, and of other images in both modes, unless the file says that it was done.
 _MODE_DECIDES_SINCE = (5, 2, 0)
 
+# Before these versions, Cycles repeats the tile of an image that has only one, and on boxes, whose sides have the first
+# tile only.
+_SINGLE_TILES_SINCE, _BOXES_HAVE_TILES_SINCE = (4, 4, 0), (5, 2, 0)
+_FIRST_TILE = 1001
+
 # First bytes of the formats that the library reads itself: PNG, JPEG, TIFF (both byte orders, and BigTIFF), OpenEXR,
 # Radiance.
 _READABLE = (b"\x89PNG", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"II+\x00", b"MM\x00+", b"\x76\x2f\x31\x01", b"#?")
@@ -194,10 +199,14 @@ def _path(image: Any, frame_number: int | None, abspath: Any) -> str:
     return sequence_path(path, frame_number) if image.source == "SEQUENCE" and frame_number is not None else path
 
 
-def _tiles(image: Any, frame_number: int | None, abspath: Any) -> tuple[list[TileState], bool]:
+def _tiles(image: Any, frame_number: int | None, abspath: Any, is_boxed: bool) -> tuple[list[TileState], bool]:
     path = _path(image, frame_number, abspath)
     if image.source == "TILED":
-        results = [_udim_tile(image, path, tile.number) for tile in image.tiles]
+        numbers = [_FIRST_TILE] if is_boxed else [tile.number for tile in image.tiles]
+        results = [_udim_tile(image, path, number) for number in numbers]
+        has_tiles_since = _BOXES_HAVE_TILES_SINCE if is_boxed else _SINGLE_TILES_SINCE
+        if len(numbers) == 1 and compat.VERSION < has_tiles_since:
+            results[0][0].number = 0
         return [tile for tile, _ in results], any(is_float for _, is_float in results)
     decoded = None
     if image.source in {"GENERATED", "VIEWER", "MOVIE"} or image.is_dirty:
@@ -240,9 +249,13 @@ def signature(image: Any, number: int | None, abspath: Any) -> tuple[Any, ...] |
     return (image.name, path, number, numbers, stamps, packed, image.alpha_mode, settings.is_data, settings.name)
 
 
-def image_state(image: Any, number: int | None, abspath: Any) -> ImageState:
-    """Returns what the library needs of an image. number: that of its frame; abspath: bpy.path.abspath."""
-    tiles, is_float = _tiles(image, number, abspath)
+def image_state(image: Any, number: int | None, abspath: Any, is_boxed: bool = False) -> ImageState:
+    """Returns what the library needs of an image.
+
+    number: that of its frame; abspath: bpy.path.abspath; is_boxed: whether the image is projected from the sides of a
+    box, where Cycles has the first tile only.
+    """
+    tiles, is_float = _tiles(image, number, abspath, is_boxed)
     settings = image.colorspace_settings
     space = "" if compat.is_data(settings) else settings.name
     if tiles[0].is_linear:

@@ -39,18 +39,22 @@ class Resources:
         self.aovs: dict[str, int] = {}
         """The index + 1 of the channels of AOVs, by name."""
 
-    def image(self, image: Any, image_user: Any = None) -> int:
-        """Returns the key of an image at the rendered frame. Sets the native image if it is new or has changed."""
+    def image(self, image: Any, image_user: Any = None, is_boxed: bool = False) -> int:
+        """Returns the key of an image at the rendered frame. Sets the native image if it is new or has changed.
+
+        is_boxed: whether it is projected from the sides of a box.
+        """
         if image is None:
             return 0
         number = images.number_of_frame(image, image_user, self.frame)
         if warning := images.warning(image, number, self._abspath):
             self.warn(warning)
-        key = self._keys.key((image.as_pointer(), number))
+        is_boxed &= image.source == "TILED"
+        key = self._keys.key((image.as_pointer(), number, is_boxed))
         signature = images.signature(image, number, self._abspath)
         if signature is not None and not self._keys.changed(key, signature):
             return key
-        state = images.image_state(image, number, self._abspath)
+        state = images.image_state(image, number, self._abspath, is_boxed)
         if signature is not None or self._keys.changed(key, images.content(state)):
             struct, _keep = images.fill_image(state)
             self._target.set_image(key, struct)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .node import NodeView
-from .ops import Geometry, Op, VectorMath
+from .ops import Geometry, NormalSpace, Op, VectorMath
 from .program import Value
 
 _ROUGH_REFLECTION = 0.35
@@ -19,6 +19,10 @@ _UNIT_DIRECTIONS = {
     (int(Op.GEOMETRY), int(kind)) for kind in (Geometry.NORMAL, Geometry.TRUE_NORMAL, Geometry.INCOMING)
 }
 _UNIT_DIRECTIONS.add((int(Op.VECTOR_MATH), int(VectorMath.NORMALIZE)))
+_TANGENT_MAPS = {
+    (int(Op.NORMAL_MAP), int(space))
+    for space in (NormalSpace.TANGENT, NormalSpace.UNIT_TANGENT, NormalSpace.BLENDED_TANGENT)
+}
 _UNIT_OPS = {int(op) for op in (Op.NORMAL_MAP, Op.BUMP, Op.TANGENT)}
 
 
@@ -61,13 +65,26 @@ def warn_of_refraction(view: NodeView, *roughnesses: Value) -> None:
     """Warns of rough refraction, of which any of the roughnesses varies or is large.
 
     Where Cycles samples lights, it counts directions into which no microfacet refracts. With lights that only rays
-    find, its pictures are those of Gradus.
+    find, its pictures are those of Gradus. Also warns of normals with which Cycles before Blender 4.0 refracts wrongly.
     """
+    if view.version < (4, 0, 0) and _may_point_away(view, view.direction("Normal")):
+        view.warn_replaced(
+            "has a normal that is neither a bump nor a tangent map: where it points away from the surface, Cycles "
+            "before Blender 4.0 refracts light from the viewer's side, too"
+        )
     if any(not value.is_constant or value.constant[0] > _ROUGH_GLASS for value in roughnesses):
         view.warn_replaced(
             "refracts roughly: lights behind it are up to 7 % brighter in Cycles, which counts directions, too, "
             "into which no light is refracted"
         )
+
+
+def _may_point_away(view: NodeView, normal: Value) -> bool:
+    """Returns whether a normal is that of neither the surface, a bump nor a tangent map, which are above the surface."""
+    if normal.is_constant:
+        return not normal.is_zero()
+    op, mode = view.program.nodes[normal.node][:2]
+    return op != Op.BUMP and (op, mode) not in _TANGENT_MAPS
 
 
 def warn_of_velvet(view: NodeView) -> None:

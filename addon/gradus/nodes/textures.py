@@ -72,11 +72,12 @@ def _divides_by_alpha(view: NodeView, image: object) -> bool:
 @translator("ShaderNodeTexImage")
 def image_texture(view: NodeView) -> Value:
     node, image = view.node, view.node.image
-    key = view.walker.resources.image(image, node.image_user) if image is not None else 0
+    is_boxed = node.projection == "BOX"
+    key = view.walker.resources.image(image, node.image_user, is_boxed) if image is not None else 0
     mode = _PROJECTION[node.projection] | _INTERPOLATION[node.interpolation] << 2
     mode |= _EXTENSION.get(node.extension, 0) << 4
     mode |= _divides_by_alpha(view, image) << 6
-    floats = (float(node.projection_blend),) if node.projection == "BOX" else ()
+    floats = (float(node.projection_blend),) if is_boxed else ()
     vector = coordinates(view, TexCoord.UV)
     kind, output = (FLOAT, 1) if view.output == "Alpha" else (COLOR, 0)
     return view.add(Op.IMAGE, (vector,), mode, floats, key, kind=kind, output=output)

@@ -191,7 +191,8 @@ Vec4 interpolate(const ImageTile& tile, const Vec2& uv, Interpolation interpolat
 }
 
 // Returns the tile that holds *uv, or nullptr if there is none, and makes *uv relative to it. UDIM number
-// 1001 + column + 10 row covers [column, column + 1) x [row, row + 1).
+// 1001 + column + 10 row covers [column, column + 1) x [row, row + 1). As in Cycles, which rounds towards 0, the first
+// column and row begin after -1.
 const ImageTile* find_tile(const Image& image, Vec2* uv) {
   if (image.tiles.empty()) {
     return nullptr;
@@ -199,8 +200,8 @@ const ImageTile* find_tile(const Image& image, Vec2* uv) {
   if (image.tiles[0].number == 0) {
     return &image.tiles[0];
   }
-  const float column = std::floor(uv->x);
-  const float row = std::floor(uv->y);
+  const float column = std::trunc(uv->x);
+  const float row = std::trunc(uv->y);
   if (!(column >= 0.0f && column < 10.0f && row >= 0.0f && row < 1000.0f)) {
     return nullptr;
   }

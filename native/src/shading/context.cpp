@@ -80,7 +80,8 @@ ShadeContext moved_context(const ShadeContext& context, const geometry::SurfaceD
   ShadeContext c = context;
   c.center = &context;
   c.position += step;
-  c.hit.uv += derivatives.duv(step);
+  const Vec2 duv = derivatives.duv(step);
+  c.hit.uv += context.backfacing ? -duv : duv;
   return c;
 }
 

@@ -54,8 +54,9 @@ float camera_distance(const ShadeContext& context);
 // Returns the position in world space, or the direction for the background.
 Vec3 world_position(const ShadeContext& context);
 // Returns the context moved by `step` along the primitive of its hit, of which the derivatives are given. Interpolated
-// values are those of the new point, but tangents stay those of `context`, as in Cycles. `context` must outlive the
-// result.
+// values are those of the new point, but tangents stay those of `context`, as in Cycles. Seen from behind, interpolated
+// values are those of a step in the opposite direction, as in Cycles, so that bumps of a texture with UV coordinates
+// are the same bumps on both sides. `context` must outlive the result.
 ShadeContext moved_context(const ShadeContext& context, const geometry::SurfaceDerivatives& derivatives,
                            const Vec3& step);
 // Returns the point to which a bump compares this neighbour of it, or the context itself.

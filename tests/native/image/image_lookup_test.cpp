@@ -192,7 +192,9 @@ TEST(ImageLookup, UdimTiles) {
   EXPECT_NEAR(image.at(1.5f, 0.5f).x * 255.0f, 2.0f, 1e-4f);
   EXPECT_NEAR(image.at(0.5f, 1.5f).x * 255.0f, 11.0f, 1e-4f);
   EXPECT_EQ(image.at(5.5f, 0.5f), Vec4(1, 0, 1, 1));
-  EXPECT_EQ(image.at(-0.5f, 0.5f), Vec4(1, 0, 1, 1));
+  EXPECT_EQ(image.at(-1.5f, 0.5f), Vec4(1, 0, 1, 1));
+  EXPECT_NEAR(image.at(-0.5f, 1.5f).x * 255.0f, 11.0f, 1e-4f);  // as in Cycles, which rounds towards 0
+  EXPECT_NEAR(image.at(1.5f, -0.5f).x * 255.0f, 2.0f, 1e-4f);
 }
 
 TEST(ImageLookup, MeanIsLinear) {

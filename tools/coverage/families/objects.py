@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import bpy
@@ -148,6 +149,8 @@ def rows_of_types() -> Iterator[Row]:
     for value in rna.enum_values(bpy.data.objects["Mesh"], "type"):
         if value in MAKERS:
             yield types.row(f" {value}", partial(add_type, value))
+        elif value in {"CURVES", "POINTCLOUD"}:
+            yield types.row(f" {value}", add_hair if value == "CURVES" else add_points)
         elif value not in {"MESH", "CAMERA", "LIGHT"}:
             yield types.row(f" {value}", partial(add_by_operator, value))
 
@@ -194,24 +197,7 @@ def _meta() -> Any:
     return data
 
 
-def _hair() -> Any:
-    data = bpy.data.hair_curves.new("Hair")
-    data.add_curves([4, 4])
-    for index, point in enumerate(data.points):
-        point.position, point.radius = (0.5 * (index // 4), 0.2 * (index % 4) ** 1.5, 0.3 * (index % 4)), 0.08
-    return data
-
-
-def _points() -> Any:
-    data = bpy.data.pointclouds.new("Points")
-    if hasattr(data, "resize"):  # from 5.0 on; before, scripts can make empty ones only
-        data.resize(5)
-    for index, point in enumerate(data.points):
-        point.co, point.radius = (0.6 * index - 1.2, 0.2 * index, 0.1), 0.3
-    return data
-
-
-MAKERS = {"CURVE": _curve, "FONT": _text, "SURFACE": _surface, "META": _meta, "CURVES": _hair, "POINTCLOUD": _points}
+MAKERS = {"CURVE": _curve, "FONT": _text, "SURFACE": _surface, "META": _meta}
 """Functions that make the data of an object of a type."""
 
 
@@ -219,6 +205,39 @@ def add_type(kind: str, _subject: Any) -> None:
     data = MAKERS[kind]()
     data.materials.append(stages.checks(2.0))
     stages.add(data, kind.title())
+
+
+def add_hair(_subject: Any) -> None:
+    """Adds a curve of hair made by nodes, because scripts cannot make its points in Blender 3.4."""
+    line, thick = add_by_nodes(bpy.data.hair_curves.new("Hair"), "CurvePrimitiveLine", "SetCurveRadius")
+    line.inputs["Start"].default_value, line.inputs["End"].default_value = (-1.0, 0.2, 0.1), (1.0, -0.3, 0.9)
+    thick.inputs["Radius"].default_value = 0.2
+
+
+def add_points(_subject: Any) -> None:
+    """Adds points made by nodes, because scripts cannot make them before Blender 5.2."""
+    points, place = add_by_nodes(bpy.data.pointclouds.new("Points"), "Points", "SetPosition")
+    points.inputs["Count"].default_value, points.inputs["Radius"].default_value = 1, 0.6
+    place.inputs["Offset"].default_value = (0.4, 0.2, 0.1)
+
+
+def add_by_nodes(data: Any, maker: str, changer: str) -> tuple[Any, Any]:
+    """Adds an object whose geometry a node makes, another one changes and a third one gives a material.
+
+    Returns the first two nodes.
+    """
+    tree = bpy.data.node_groups.new("Maker", "GeometryNodeTree")
+    if hasattr(tree, "interface"):
+        tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    else:
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+    made, changed, shaded = (tree.nodes.new(f"GeometryNode{kind}") for kind in (maker, changer, "SetMaterial"))
+    shaded.inputs["Material"].default_value = stages.checks(2.0)
+    chain = (made, changed, shaded, tree.nodes.new("NodeGroupOutput"))
+    for source, target in pairwise(chain):
+        tree.links.new(source.outputs[0], target.inputs[0])
+    stages.add(data, data.name).modifiers.new("Nodes", "NODES").node_group = tree
+    return made, changed
 
 
 def add_by_operator(kind: str, _subject: Any) -> None:
