@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from . import settings
+from .export.collect import is_portal
 
 SAME_NAME = (
     "max_bounces",
@@ -166,9 +167,28 @@ def _ignored(scene: Any) -> list[str]:
         "Fast GI Approximation": cycles.use_fast_gi,
         "Use Pixel Jitter": getattr(cycles, "use_pixel_jitter", False),  # of developers, since 5.2
         "Texture Limit": scene.render.use_simplify and cycles.texture_limit_render != "OFF",
+        "World > Max Bounces": _limits_world(scene),
         "Rolling Shutter": scene.render.use_motion_blur and cycles.rolling_shutter_type != "NONE",
     }
     return [name for name, is_on in switches.items() if is_on]
+
+
+def _limits_world(scene: Any) -> bool:
+    """Returns whether Cycles leaves samples of the world as a light out of paths with more bounces than its limit.
+
+    It samples a world of one colour, or one whose sampling is off, only through portals.
+    """
+    of_world = getattr(scene.world and scene.world.original, "cycles", None)
+    if of_world is None or of_world.max_bounces >= scene.cycles.max_bounces:
+        return False
+    is_sampled = of_world.sampling_method != "NONE" and not _is_plain(scene.world)
+    return is_sampled or any(is_portal(obj.data) for obj in scene.objects if obj.type == "LIGHT")
+
+
+def _is_plain(world: Any) -> bool:
+    """Returns whether the world has no nodes but a Background."""
+    tree = world.node_tree if getattr(world, "use_nodes", True) else None
+    return tree is None or {node.type for node in tree.nodes} <= {"BACKGROUND", "OUTPUT_WORLD"}
 
 
 def _text(value: Any) -> str:

@@ -301,24 +301,68 @@ def test_a9_walks_between_microfacets(
     assert found == pytest.approx(expected, rel=tolerance)
 
 
-@pytest.mark.parametrize("name", ["ggx 0.5", "beckmann 0.8", "ashikhmin-shirley 0.5", "velvet 0.5"])
-def test_a9_colour_of_a_closure(name: str, sheet: bpy.types.Scene, tmp_path: Path) -> None:
-    """Regression: the colour passes of rough surfaces lacked what single scattering loses."""
+@pytest.mark.skipif(VERSION < (4, 5, 0), reason="before 4.5 a coat loses what single scattering does")
+@pytest.mark.parametrize("distribution", ["GGX", "MULTI_GGX"])
+@pytest.mark.parametrize("roughness", [0.6, 0.9])
+def test_a9_rough_coat(roughness: float, distribution: str, sheet: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: surfaces below a rough coat were up to 5 % too dark."""
     item = sheet.objects["Sheet"]
-    item.rotation_euler = (0.0, 0.8, 0.0)
-    item.data.materials.append(material_of(CASES[name]))
+    item.rotation_euler = (0.0, 0.4, 0.0)
+    case = rough("BsdfPrincipled", distribution, 0.5, **{"Coat Weight": 1.0, "Coat Roughness": roughness})
+    case[1]["Coat IOR"] = 1.7
+    item.data.materials.append(material_of(case))
+    expected, found = (picture.mean(axis=(0, 1)) for picture in pictures(sheet, tmp_path, "front"))
+    print(f"coat {roughness}, {distribution}: {found / expected - 1}")
+    assert found == pytest.approx(expected, rel=0.006)
+
+
+COLOURED = {name: CASES[name] for name in ("ggx 0.5", "beckmann 0.8", "ashikhmin-shirley 0.5", "velvet 0.5")}
+if VERSION >= (4, 0, 0):  # before 3.5, colours of Cycles are weights without Fresnel
+    BASE = {"Base Color": (0.6, 0.3, 0.1, 1.0)}
+    LAYERS = {
+        "dielectric": {},
+        "tint": {"Specular IOR Level": 0.9, "Specular Tint": (0.2, 0.5, 1.0, 1.0)},
+        "metal": {"Metallic": 1.0},
+        "coat": {"Coat Weight": 1.0, "Coat Roughness": 0.8},
+        "glass": {"Transmission Weight": 1.0},
+        "filmed": {"Thin Film Thickness": 400.0},
+        "filmed glass": {"Thin Film Thickness": 400.0, "Transmission Weight": 1.0},
+    }
+    if VERSION < (4, 5, 0):
+        del LAYERS["coat"]
+    COLOURED |= {
+        f"{distribution}, {layer}": rough("BsdfPrincipled", distribution, 0.8, **BASE, **inputs)
+        for layer, inputs in LAYERS.items()
+        for distribution in ("GGX", "MULTI_GGX")
+    }
+    COLOURED |= {f"{d} glass": rough("BsdfGlass", d, 0.8, Color=(0.6, 0.3, 0.1, 1.0)) for d in ("GGX", "MULTI_GGX")}
+    COLOURED |= {f"{d} refraction": rough("BsdfRefraction", d, 0.8) for d in ("GGX", "BECKMANN")}
+    COLOURED |= {name: case for name, case in CASES.items() if name in {"beckmann glass 1.0", "beckmann metal"}}
+    COLOURED |= {name: case for name, case in CASES.items() if name in {"conductor 0.6", "film of 450 nm on metal"}}
+
+
+@pytest.mark.parametrize("tilt", [0.2, 0.8])
+@pytest.mark.parametrize("name", COLOURED)
+def test_a9_colour_of_a_closure(name: str, tilt: float, sheet: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: the colour passes of rough surfaces lacked what single scattering loses, up to 58 %."""
+    item = sheet.objects["Sheet"]
+    item.rotation_euler = (0.0, tilt, 0.0)
+    item.data.materials.append(material_of(COLOURED[name]))
     layer = sheet.view_layers[0]
-    layer.use_pass_glossy_color = layer.use_pass_diffuse_color = True
+    switches = [f"use_pass_{kind}_color" for kind in ("diffuse", "glossy", "transmission")]
+    for switch in switches:
+        setattr(layer, switch, True)
     colors = []
     for engine in ("CYCLES", "GRADUS"):
         sheet.render.engine = engine
         passes = images.render(sheet, tmp_path)
         shown = [image for key, image in passes.items() if "." not in key and ("Col" in key)]
         colors.append(np.concatenate([image[..., :3] for image in shown], axis=2).mean(axis=(0, 1)))
-    layer.use_pass_glossy_color = layer.use_pass_diffuse_color = False
+    for switch in switches:
+        setattr(layer, switch, False)
     print(f"colour of {name}: {colors}")
     assert colors[0].max() > 0.1
-    assert colors[1] == pytest.approx(colors[0], rel=0.01, abs=1e-3)
+    assert colors[1] == pytest.approx(colors[0], rel=0.015, abs=1e-3)
 
 
 SHIFTED = (

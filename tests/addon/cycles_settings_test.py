@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import bpy
+import numpy as np
 import pytest
 from gradus import cycles_settings, native, options, renderer, settings
-from support.nodes import new_world, shader_material
+from support import recording
+from support.cycles import picture
+from support.nodes import Graph, new_world, shader_material, socket
 
 
 @pytest.fixture
@@ -77,6 +82,31 @@ def test_a_limit_of_textures_is_named(cycles: bpy.types.Scene) -> None:
     cycles.render.use_simplify = True
     [text] = cycles_settings.warnings(cycles, set(), is_followed=True)
     assert text.endswith("does not have: Texture Limit")
+
+
+@pytest.mark.parametrize("sampling", ["AUTOMATIC", "NONE"])
+@pytest.mark.parametrize("portal", [False, True])
+@pytest.mark.parametrize("varies", [False, True])
+def test_a_limit_of_bounces_of_the_world_is_named(
+    cycles: bpy.types.Scene, tmp_path: Path, varies: bool, portal: bool, sampling: str
+) -> None:
+    """It was ignored without a word. A warning names it exactly where it changes the picture of Cycles."""
+    recording.add_camera(lens=30.0).location = (0.0, 0.0, 3.0)
+    bpy.ops.mesh.primitive_plane_add(size=10.0)
+    bpy.ops.mesh.primitive_cube_add(size=1.0)
+    cycles.world = new_world((1.0, 1.0, 1.0))
+    if varies:
+        graph = Graph(cycles.world)
+        background = next(node for node in graph.tree.nodes if node.type == "BACKGROUND")
+        graph.tree.links.new(graph("TexChecker", "Color"), socket(background.inputs, "Color"))
+    if portal:
+        bpy.ops.object.light_add(type="AREA", location=(0.0, 0.0, 2.0))
+        bpy.context.object.data.cycles.is_portal = True
+    cycles.world.cycles.sampling_method = sampling
+    unlimited = picture(cycles, tmp_path, "CYCLES")
+    cycles.world.cycles.max_bounces = 0
+    changes = not np.array_equal(picture(cycles, tmp_path, "CYCLES"), unlimited)
+    assert changes == any("World > Max Bounces" in text for text in cycles_settings.warnings(cycles, set(), True))
 
 
 def test_clamps_of_several_lights_are_named(cycles: bpy.types.Scene) -> None:

@@ -139,8 +139,16 @@ def light_path(tree: Any, output: str) -> bpy.types.NodeSocket:
     return tree.nodes.new("ShaderNodeLightPath").outputs[output]
 
 
-DIFFERENT = ("Is Diffuse Ray", "Is Glossy Ray", "Is Reflection Ray", "Ray Length", "Diffuse Depth", "Glossy Depth")
-SAME = ("Is Camera Ray", "Is Shadow Ray", "Is Singular Ray", "Ray Depth", "Transparent Depth")
+DIFFERENT = (
+    "Is Diffuse Ray",
+    "Is Glossy Ray",
+    "Is Reflection Ray",
+    "Ray Length",
+    "Diffuse Depth",
+    "Glossy Depth",
+    "Transparent Depth",
+)
+SAME = ("Is Camera Ray", "Is Shadow Ray", "Is Singular Ray", "Ray Depth")
 
 
 @pytest.mark.parametrize("output", DIFFERENT + SAME)

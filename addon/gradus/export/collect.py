@@ -214,7 +214,7 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCa
     owner = instance.instance_object if copies else obj
     properties = cache.properties(obj, owner, instance.parent if copies else None)
     data = obj.data
-    if properties.visibility & ALL_RAYS == 0 or data is None or (is_light and _is_portal(data)):
+    if properties.visibility & ALL_RAYS == 0 or data is None or (is_light and is_portal(data)):
         return None
     address = data.as_pointer()
     if properties.is_edited and owner.data.as_pointer() == address:
@@ -256,6 +256,6 @@ def _topmost(obj: Any) -> Any:
     return obj
 
 
-def _is_portal(data: Any) -> bool:
+def is_portal(data: Any) -> bool:
     """Returns whether a light is a portal of Cycles, which guides sampling and emits nothing."""
     return data.type == "AREA" and bool(getattr(getattr(data, "cycles", None), "is_portal", False))

@@ -20,11 +20,13 @@ _NAMES = {
     LightPath.DEPTH: "Ray Depth",
     LightPath.DIFFUSE_DEPTH: "Diffuse Depth",
     LightPath.GLOSSY_DEPTH: "Glossy Depth",
+    LightPath.TRANSPARENT_DEPTH: "Transparent Depth",
     LightPath.TRANSMISSION_DEPTH: "Transmission Depth",
 }
 
-# What differs depends on what emits: a light has neither kinds nor lengths of its own in both engines.
-_DEPTHS = {LightPath.DEPTH, LightPath.DIFFUSE_DEPTH, LightPath.GLOSSY_DEPTH, LightPath.TRANSMISSION_DEPTH}
+# What differs depends on what emits: a light has neither kinds nor lengths of its own in both engines. Where Cycles
+# samples a light, it does not count the transparent surfaces before it.
+_DEPTHS = {mode for mode, name in _NAMES.items() if name.endswith("Depth")}
 _DIFFERENT = {"SURFACE": set(_NAMES) - {LightPath.DEPTH}, "WORLD": set(_NAMES), "LIGHT": _DEPTHS}
 
 _EMISSION_OF_PRINCIPLED = 17

@@ -130,6 +130,21 @@ Rgb repeated_bounces(float single, float mean, const Rgb& color) {
   return Rgb(1.0f) + color * mean / (Rgb(1.0f) - color * (1.0f - mean)) * missing;
 }
 
+// Returns the share of the reflected light in Cycles' estimate of the albedo, which leaves out the tint at 82 degrees
+// and takes a conductor as smooth.
+Rgb estimated_reflection(const Lobe& lobe, float cosine) {
+  const GgxMoments m = ggx_moments(mean_alpha(lobe), cosine);
+  switch (lobe.fresnel) {
+    case FresnelType::Conductor:
+    case FresnelType::ApproximateConductor:
+      return lobe_fresnel(lobe, cosine);
+    case FresnelType::PrincipledMetal:
+      return f82_albedo(m, lobe.f0, Rgb(1.0f)) / m.one;
+    default:
+      return reflected_once(lobe, cosine) / m.one;
+  }
+}
+
 LobeAlbedo dirac_albedo(const Lobe& lobe, float cosine) {
   const FresnelSplit split = lobe_fresnel_split(lobe, cosine);
   return {lobe.weight * split.reflected, lobe.weight * split.transmitted};
@@ -196,6 +211,26 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
     default:
       return dirac_albedo(lobe, cosine);
   }
+}
+
+LobeAlbedo shown_albedo(const Lobe& lobe, float signed_cosine) {
+  if (!is_microfacet(lobe.type) || is_dirac(lobe.type)) {
+    return two_sided_albedo(lobe, signed_cosine);
+  }
+  const float cosine = std::min(std::abs(signed_cosine), 1.0f), alpha = mean_alpha(lobe);
+  const int sides = sides_of(lobe.type);
+  const bool alone = sides == kTransmits && lobe.fresnel == FresnelType::None;
+  float kept = 1.0f;
+  if (lobe.multiscatter && sides == kReflects) {
+    kept = ggx_moments(alpha, cosine).one;
+  } else if (lobe.multiscatter) {
+    const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
+    kept = alone ? glass.crossing : glass.reflected + glass.transmitted;
+  }
+  const Rgb total = lobe.weight * lobe.energy * kept;  // energy is 1 without multiscatter
+  const Rgb reflected = alone ? Rgb(0.0f) : glm::clamp(estimated_reflection(lobe, cosine), 0.0f, 1.0f);
+  const Rgb transmitted = (Rgb(1.0f) - reflected) * lobe.transmission_tint;
+  return {sides & kReflects ? total * reflected : Rgb(0.0f), sides & kTransmits ? total * transmitted : Rgb(0.0f)};
 }
 
 // As in Cycles, the albedo for layering ignores the energy that single scattering loses. Cycles' tables start at an IOR

@@ -69,6 +69,8 @@ struct LobeAlbedo {
 // Returns the directional albedos of a finished lobe, including weight and energy compensation. `cosine` is that of wo
 // and the lobe's normal.
 LobeAlbedo two_sided_albedo(const Lobe& lobe, float cosine);
+// Returns the directional albedos that Cycles estimates for its colour passes. They keep what single scattering loses.
+LobeAlbedo shown_albedo(const Lobe& lobe, float cosine);
 // Returns the factor by which multiple scattering raises a microfacet lobe, for the cosine of wo and the normal.
 Rgb multiscatter_energy(const Lobe& lobe, float cosine);
 // Returns whether the light of repeated bounces between microfacets leaves diffusely, as in Blender before 4.0, and

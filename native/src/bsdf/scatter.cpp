@@ -238,16 +238,6 @@ LightPass Closures::light_pass(int lobe, bool transmitted) const {
 
 namespace {
 
-// Returns the albedos that Cycles shows of a lobe. Those of microfacets without a Fresnel term keep what single
-// scattering loses.
-LobeAlbedo shown_albedo(const Lobe& lobe, float cosine) {
-  const bool loses = is_microfacet(lobe.type) && !lobe.multiscatter && sides_of(lobe.type) != kBothSides;
-  if (!loses || lobe.fresnel != FresnelType::None) {
-    return two_sided_albedo(lobe, cosine);
-  }
-  return sides_of(lobe.type) == kTransmits ? LobeAlbedo{Rgb(0.0f), lobe.weight} : LobeAlbedo{lobe.weight, Rgb(0.0f)};
-}
-
 // Returns the sum over the lobes of a pass of their albedos, which a function returns.
 Rgb sum_of_pass(const Closures& closures, LightPass pass, const Vec3& wo, LobeAlbedo (*albedo_of)(const Lobe&, float)) {
   Rgb sum(0.0f);

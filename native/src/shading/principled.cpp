@@ -112,6 +112,7 @@ class Layers {
     if (reflects(c_)) {
       bsdf::Lobe* lobe = new_layer(bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_ * amount, normal);
       lobe->fresnel = bsdf::FresnelType::Dielectric;
+      lobe->multiscatter = true;  // in Cycles since Blender 4.5, whatever the distribution of the layers below
       lobe->ior = ior;
       const float roughness = saturate(args_.f(kCoatRoughness));
       lobe->alpha_x = lobe->alpha_y = roughness * roughness;
