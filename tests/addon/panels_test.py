@@ -195,11 +195,11 @@ def test_the_bias_of_clamps(scene: bpy.types.Scene) -> None:
     settings = method(reconstruction="NONE")
     assert render_panels.bias(settings, 64, is_clamped=True)[0] == "Biased by clamping"
     if hasattr(scene, "cycles"):
-        assert render_panels.is_clamped(scene)
+        assert render_panels.has_clamps(scene)
         scene.cycles.sample_clamp_indirect = 0.0
-    assert not render_panels.is_clamped(scene)
+    assert not render_panels.has_clamps(scene)
     scene.gradus.clamp_direct = 2.0
-    assert render_panels.is_clamped(scene)
+    assert render_panels.has_clamps(scene)
 
 
 def test_presets_set_their_values_and_reset_others(scene: bpy.types.Scene) -> None:

@@ -38,13 +38,13 @@ class GRADUS_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         layout.prop(settings, "preview_samples")
 
 
-def is_clamped(scene: Any) -> bool:
+def has_clamps(scene: Any) -> bool:
     """Returns whether light is clamped, by settings of Gradus or those of Cycles that it follows."""
     owners = (cycles_settings.owner(scene, name, scene.gradus.use_cycles_settings) for name in CLAMPS)
     return any(getattr(owner, key) > 0.0 for owner, key in owners)
 
 
-def bias(settings: Any, samples: int, clamped: bool) -> tuple[str, str]:
+def bias(settings: Any, samples: int, is_clamped: bool) -> tuple[str, str]:
     """Returns a text about the bias of the settings, and its icon.
 
     Only the render finds out whether there is a denoiser.
@@ -58,7 +58,7 @@ def bias(settings: Any, samples: int, clamped: bool) -> tuple[str, str]:
         return "Biased if a denoiser is found", "INFO"
     if settings.use_temporal and method.denoised_from < math.inf:
         return "Consistent; biased in animations if a denoiser is found", "INFO"
-    if clamped:
+    if is_clamped:
         return "Biased by clamping", "INFO"
     if method.reconstruction in ("L1", "REGULARIZED"):
         return "Consistent", "INFO"
@@ -78,7 +78,7 @@ class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
         column.prop(settings, "reconstruction")
         if settings.reconstruction in automatic.FROM_GRADIENTS:
             column.prop(settings, "reconstruction_alpha")
-        text, icon = bias(settings, context.view_layer.samples or settings.samples, is_clamped(context.scene))
+        text, icon = bias(settings, context.view_layer.samples or settings.samples, has_clamps(context.scene))
         layout.label(text=text, icon=icon)
 
 
