@@ -173,6 +173,23 @@ def _ignored(scene: Any) -> list[str]:
     return [name for name, is_on in switches.items() if is_on]
 
 
+_SAME_IN_ALL_DIRECTIONS = {
+    "OUTPUT_WORLD",
+    "BACKGROUND",
+    "ADD_SHADER",
+    "MIX_SHADER",
+    "RGB",
+    "VALUE",
+    "MATH",
+    "MIX",
+    "MIX_RGB",
+    "BLACKBODY",
+    "LIGHT_PATH",
+    "REROUTE",
+    "FRAME",
+}
+
+
 def _limits_world(scene: Any) -> bool:
     """Returns whether Cycles leaves samples of the world as a light out of paths with more bounces than its limit.
 
@@ -182,13 +199,14 @@ def _limits_world(scene: Any) -> bool:
     if of_world is None or of_world.max_bounces >= scene.cycles.max_bounces:
         return False
     is_sampled = of_world.sampling_method != "NONE" and not _is_plain(scene.world)
-    return is_sampled or any(is_portal(obj.data) for obj in scene.objects if obj.type == "LIGHT")
+    lights = (obj for obj in scene.objects if obj.type == "LIGHT" and not obj.hide_render)
+    return is_sampled or any(is_portal(light.data) for light in lights)
 
 
 def _is_plain(world: Any) -> bool:
-    """Returns whether the world has no nodes but a Background."""
+    """Returns whether the world has only nodes that are the same in all directions."""
     tree = world.node_tree if getattr(world, "use_nodes", True) else None
-    return tree is None or {node.type for node in tree.nodes} <= {"BACKGROUND", "OUTPUT_WORLD"}
+    return tree is None or {node.type for node in tree.nodes} <= _SAME_IN_ALL_DIRECTIONS
 
 
 def _text(value: Any) -> str:

@@ -317,7 +317,7 @@ def test_a9_rough_coat(roughness: float, distribution: str, sheet: bpy.types.Sce
 
 
 COLOURED = {name: CASES[name] for name in ("ggx 0.5", "beckmann 0.8", "ashikhmin-shirley 0.5", "velvet 0.5")}
-if VERSION >= (4, 0, 0):  # before 3.5, colours of Cycles are weights without Fresnel
+if VERSION >= (4, 0, 0):  # in 3.4, colours of Cycles are weights without Fresnel
     BASE = {"Base Color": (0.6, 0.3, 0.1, 1.0)}
     LAYERS = {
         "dielectric": {},

@@ -64,12 +64,6 @@ def choose_engine(scene: bpy.types.Scene, engine: str) -> None:
     settings.samples, settings.reconstruction, settings.integrator, settings.denoiser = SAMPLES, "NONE", "PATH", "NONE"
 
 
-def masks_of(file: Path) -> dict[str, dict[str, np.ndarray]]:
-    """Returns the masks of all names by layer and kind, as another program decodes them."""
-    cryptomatte_api = pytest.importorskip("cryptomatte_api", reason="is there for the Python of Blender 4.5 alone")
-    return {matte.metadata().name(): matte.masks() for matte in cryptomatte_api.Cryptomatte.load(str(file))}
-
-
 def assert_masks_agree(ours: np.ndarray, theirs: np.ndarray, name: str) -> None:
     assert theirs.mean() > 0.01, name
     assert np.abs(ours - theirs).mean() < 0.1 * theirs.mean(), name
@@ -77,15 +71,18 @@ def assert_masks_agree(ours: np.ndarray, theirs: np.ndarray, name: str) -> None:
 
 
 def test_another_program_decodes_the_masks_of_cycles(blurred: bpy.types.Scene, tmp_path: Path) -> None:
+    """Masks are compared by the names of layers and kinds."""
+    cryptomatte_api = pytest.importorskip("cryptomatte_api", reason="is there for the Python of Blender 4.5 alone")
     masks = {}
     for engine in ("CYCLES", "GRADUS"):
         choose_engine(blurred, engine)
         images.use_exr(blurred, tmp_path / f"{engine}.exr")
         bpy.ops.render.render(write_still=True, scene=blurred.name)
-        masks[engine] = masks_of(tmp_path / f"{engine}.exr")
-    mattes = {f"{layer.name}.Crypto{kind}" for layer in blurred.view_layers for kind in ("Object", "Material")}
-    assert set(masks["GRADUS"]) == set(masks["CYCLES"]) == mattes
-    for matte in sorted(mattes):
+        mattes = cryptomatte_api.Cryptomatte.load(str(tmp_path / f"{engine}.exr"))
+        masks[engine] = {matte.metadata().name(): matte.masks() for matte in mattes}
+    names = {f"{layer.name}.Crypto{kind}" for layer in blurred.view_layers for kind in ("Object", "Material")}
+    assert set(masks["GRADUS"]) == set(masks["CYCLES"]) == names
+    for matte in sorted(names):
         for name in (f"{obj} surface" if matte.endswith("Material") else obj for obj in NAMES):
             ours, theirs = masks["GRADUS"][matte].get(name), masks["CYCLES"][matte].get(name)
             if name.startswith("Half") and matte.startswith("Without"):

@@ -76,7 +76,7 @@ def test_normals_of_refraction_are_named_before_4(kind: str) -> None:
     transmission = "Transmission Weight" if VERSION >= (4, 0, 0) else "Transmission"
     given = {transmission: 1.0} if kind == "BsdfPrincipled" else {}
     given["Roughness"] = 0.2
-    for normal in (bumped, mapped("TANGENT")):
+    for normal in (bumped, mapped("TANGENT"), lambda graph: graph("NewGeometry", "True Normal")):
         assert warnings(kind, given | {"Normal": normal}) == ""
     for normal in (slanted, mapped("OBJECT")):
         assert ("viewer's side" in warnings(kind, given | {"Normal": normal})) == (VERSION < (4, 0, 0))

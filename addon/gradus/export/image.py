@@ -27,9 +27,9 @@ _ALPHA = {"STRAIGHT": STRAIGHT, "PREMUL": PREMULTIPLIED, "CHANNEL_PACKED": CHANN
 # multiplied those of floats never, and of other images in both modes, unless the file says that it was done.
 _MODE_DECIDES_SINCE = (5, 2, 0)
 
-# Before these versions, Cycles repeats the tile of an image that has only one, and on boxes, whose sides have the first
-# tile only.
-_SINGLE_TILES_SINCE, _BOXES_HAVE_TILES_SINCE = (4, 4, 0), (5, 2, 0)
+# Before these versions, Cycles repeats the tile of an image that has only one, and the first tile on boxes, whose sides
+# never show another.
+_SINGLE_TILE_REPEATS_UNTIL, _BOX_REPEATS_UNTIL = (4, 4, 0), (5, 2, 0)
 _FIRST_TILE = 1001
 
 # First bytes of the formats that the library reads itself: PNG, JPEG, TIFF (both byte orders, and BigTIFF), OpenEXR,
@@ -204,8 +204,8 @@ def _tiles(image: Any, frame_number: int | None, abspath: Any, is_boxed: bool) -
     if image.source == "TILED":
         numbers = [_FIRST_TILE] if is_boxed else [tile.number for tile in image.tiles]
         results = [_udim_tile(image, path, number) for number in numbers]
-        has_tiles_since = _BOXES_HAVE_TILES_SINCE if is_boxed else _SINGLE_TILES_SINCE
-        if len(numbers) == 1 and compat.VERSION < has_tiles_since:
+        repeats_until = _BOX_REPEATS_UNTIL if is_boxed else _SINGLE_TILE_REPEATS_UNTIL
+        if len(numbers) == 1 and compat.VERSION < repeats_until:
             results[0][0].number = 0
         return [tile for tile, _ in results], any(is_float for _, is_float in results)
     decoded = None

@@ -19,10 +19,11 @@ _UNIT_DIRECTIONS = {
     (int(Op.GEOMETRY), int(kind)) for kind in (Geometry.NORMAL, Geometry.TRUE_NORMAL, Geometry.INCOMING)
 }
 _UNIT_DIRECTIONS.add((int(Op.VECTOR_MATH), int(VectorMath.NORMALIZE)))
-_TANGENT_MAPS = {
+_ABOVE_SURFACE = {
     (int(Op.NORMAL_MAP), int(space))
     for space in (NormalSpace.TANGENT, NormalSpace.UNIT_TANGENT, NormalSpace.BLENDED_TANGENT)
 }
+_ABOVE_SURFACE |= {(int(Op.GEOMETRY), int(kind)) for kind in (Geometry.NORMAL, Geometry.TRUE_NORMAL)}
 _UNIT_OPS = {int(op) for op in (Op.NORMAL_MAP, Op.BUMP, Op.TANGENT)}
 
 
@@ -80,11 +81,11 @@ def warn_of_refraction(view: NodeView, *roughnesses: Value) -> None:
 
 
 def _may_point_away(view: NodeView, normal: Value) -> bool:
-    """Returns whether a normal is that of neither the surface, a bump nor a tangent map, which are above the surface."""
+    """Returns whether a normal is none that lies above the surface: its own, a bump's or a tangent map's."""
     if normal.is_constant:
         return not normal.is_zero()
     op, mode = view.program.nodes[normal.node][:2]
-    return op != Op.BUMP and (op, mode) not in _TANGENT_MAPS
+    return op != Op.BUMP and (op, mode) not in _ABOVE_SURFACE
 
 
 def warn_of_velvet(view: NodeView) -> None:

@@ -26,7 +26,13 @@ _NAMES = {
 
 # What differs depends on what emits: a light has neither kinds nor lengths of its own in both engines. Where Cycles
 # samples a light, it does not count the transparent surfaces before it.
-_DEPTHS = {mode for mode, name in _NAMES.items() if name.endswith("Depth")}
+_DEPTHS = {
+    LightPath.DEPTH,
+    LightPath.DIFFUSE_DEPTH,
+    LightPath.GLOSSY_DEPTH,
+    LightPath.TRANSPARENT_DEPTH,
+    LightPath.TRANSMISSION_DEPTH,
+}
 _DIFFERENT = {"SURFACE": set(_NAMES) - {LightPath.DEPTH}, "WORLD": set(_NAMES), "LIGHT": _DEPTHS}
 
 _EMISSION_OF_PRINCIPLED = 17

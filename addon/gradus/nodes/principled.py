@@ -14,7 +14,7 @@ from .shaders import distribution_mode, subsurface_anisotropy, subsurface_mode, 
 
 _WHITE = constant_color((1.0, 1.0, 1.0))
 _NONE = constant_float(0.0)
-_LEGACY_FILM = 32
+_LEGACY_FILM, _SINGLE_COAT = 32, 64
 
 
 @translator("ShaderNodeBsdfPrincipled")
@@ -99,6 +99,8 @@ def _since_4(view: NodeView) -> Value:
             view.warn_replaced("has a thin wall with subsurface scattering, which is rendered as that of a solid")
     if not view.value("Transmission Weight").is_zero():
         faults.warn_of_refraction(view, view.value("Roughness"))
+    if view.version < (4, 5, 0):
+        mode |= _SINGLE_COAT
     if film := thin_film(view):
         mode |= 0 if view.version >= (5, 0, 0) else _LEGACY_FILM
         below = (below or (_NONE,) * 5) + film

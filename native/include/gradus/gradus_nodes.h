@@ -40,7 +40,8 @@
  *                       subsurface weight, subsurface radius, subsurface scale, subsurface ior, subsurface anisotropy,
  *                       film thickness, film ior -> closure: Principled BSDF of Blender 4.0 and later without alpha,
  *                       for which it is mixed with TRANSPARENT. The emission is colour times strength. Mode:
- *                       GradusDistribution + GradusSubsurface; + 32: the thin film is that of Blender before 5.0.
+ *                       GradusDistribution + GradusSubsurface; + 32: the thin film is that of Blender before 5.0; + 64:
+ *                       a rough coat loses light, as before 4.5.
  *   PRINCIPLED_3      base color, diffuse color, metallic, specular, specular tint, roughness, anisotropic, anisotropic
  *                       rotation, sheen, sheen tint, clearcoat, clearcoat roughness, ior, transmission, transmission
  *                       roughness, normal, clearcoat normal, tangent, subsurface, subsurface radius, subsurface ior,

@@ -31,7 +31,7 @@ constexpr std::array<OpInfo, GRADUS_OP_LIMIT> make_table() {
   table[GRADUS_OP_EMISSION] = {"EMISSION", OpKind::Closure, 2, 1, 0, 0};
   table[GRADUS_OP_MIX_SHADER] = {"MIX_SHADER", OpKind::Closure, 3, 1, 0, 0};
   table[GRADUS_OP_ADD_SHADER] = {"ADD_SHADER", OpKind::Closure, 2, 1, 0, 0};
-  table[GRADUS_OP_PRINCIPLED] = {"PRINCIPLED", OpKind::Closure, 28, 1, 0, GRADUS_SUBSURFACE_ONCE + 47};
+  table[GRADUS_OP_PRINCIPLED] = {"PRINCIPLED", OpKind::Closure, 28, 1, 0, GRADUS_SUBSURFACE_ONCE + 111};
   table[GRADUS_OP_PRINCIPLED_3] = {"PRINCIPLED_3", OpKind::Closure, 22, 1, 0, GRADUS_SUBSURFACE_ONCE + 15};
   table[GRADUS_OP_METALLIC] = {"METALLIC", OpKind::Closure, 9, 1, 0, GRADUS_DISTRIBUTION_BECKMANN + 12};
   table[GRADUS_OP_SUBSURFACE] = {"SUBSURFACE", OpKind::Closure, 7, 1, 0, GRADUS_SUBSURFACE_ONCE + 15};

@@ -21,6 +21,8 @@ float ior_of_f0(float f0) {
 
 // Mode: the thin film is that of Blender before 5.0, which metals do not have.
 constexpr uint32_t kLegacyFilm = 32;
+// Mode: a coat loses what single scattering loses, as in Blender before 4.5.
+constexpr uint32_t kSingleCoat = 64;
 
 // Adds the layers from top to bottom. weight_ is the weight of the layers that are still to come.
 class Layers {
@@ -112,7 +114,7 @@ class Layers {
     if (reflects(c_)) {
       bsdf::Lobe* lobe = new_layer(bsdf::LobeType::GgxReflection, bsdf::LightPass::Glossy, weight_ * amount, normal);
       lobe->fresnel = bsdf::FresnelType::Dielectric;
-      lobe->multiscatter = true;  // in Cycles since Blender 4.5, whatever the distribution of the layers below
+      lobe->multiscatter = !(args_.mode & kSingleCoat);  // whatever the distribution of the layers below
       lobe->ior = ior;
       const float roughness = saturate(args_.f(kCoatRoughness));
       lobe->alpha_x = lobe->alpha_y = roughness * roughness;
