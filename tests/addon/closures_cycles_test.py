@@ -341,7 +341,8 @@ if VERSION >= (4, 0, 0):  # in 3.4, colours of Cycles are weights without Fresne
     COLOURED |= {name: case for name, case in CASES.items() if name in {"conductor 0.6", "film of 450 nm on metal"}}
 
 
-@pytest.mark.parametrize("tilt", [0.2, 0.8])
+# Before 5.2, Cycles estimates what rough glass transmits at flat angles from a smooth surface.
+@pytest.mark.parametrize("tilt", [0.2, 0.8, 1.2] if VERSION >= (5, 2, 0) else [0.2, 0.8])
 @pytest.mark.parametrize("name", COLOURED)
 def test_a9_colour_of_a_closure(name: str, tilt: float, sheet: bpy.types.Scene, tmp_path: Path) -> None:
     """Regression: the colour passes of rough surfaces lacked what single scattering loses, up to 58 %."""
@@ -362,7 +363,7 @@ def test_a9_colour_of_a_closure(name: str, tilt: float, sheet: bpy.types.Scene, 
         setattr(layer, switch, False)
     print(f"colour of {name}: {colors}")
     assert colors[0].max() > 0.1
-    assert colors[1] == pytest.approx(colors[0], rel=0.015, abs=1e-3)
+    assert colors[1] == pytest.approx(colors[0], rel=0.04 if tilt > 1.0 else 0.015, abs=1e-3)
 
 
 SHIFTED = (

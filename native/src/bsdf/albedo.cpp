@@ -105,11 +105,14 @@ Rgb reflected_once(const Lobe& lobe, float cosine) {
   return known ? lobe.known.reflected : single_reflection(lobe, mean_alpha(lobe), cosine);
 }
 
+// Whether a lobe transmits without a Fresnel term, and so reflects nothing.
+bool only_crosses(const Lobe& lobe) { return sides_of(lobe.type) == kTransmits && lobe.fresnel == FresnelType::None; }
+
 // Returns the single-scattering albedo of the transmission side, without the lobe's weight. For glass with a Schlick
 // term it is the dielectric albedo, scaled to the energy that the Schlick term does not reflect.
 Rgb single_transmission(const Lobe& lobe, float alpha, float cosine) {
   const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
-  if (sides_of(lobe.type) == kTransmits && lobe.fresnel == FresnelType::None) {
+  if (only_crosses(lobe)) {
     return Rgb(glass.crossing) * lobe.transmission_tint;
   }
   const bool coloured = lobe.fresnel == FresnelType::Schlick || lobe.fresnel == FresnelType::FilmDielectric;
@@ -130,19 +133,22 @@ Rgb repeated_bounces(float single, float mean, const Rgb& color) {
   return Rgb(1.0f) + color * mean / (Rgb(1.0f) - color * (1.0f - mean)) * missing;
 }
 
+// Returns the albedo of single scattering without a Fresnel term, of both sides. The rest is lost between microfacets.
+float colorless_albedo(const Lobe& lobe, float alpha, float cosine) {
+  if (!(sides_of(lobe.type) & kTransmits)) return ggx_moments(alpha, cosine).one;
+  const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
+  return only_crosses(lobe) ? glass.crossing : glass.reflected + glass.transmitted;
+}
+
 // Returns the share of the reflected light in Cycles' estimate of the albedo, which leaves out the tint at 82 degrees
 // and takes a conductor as smooth.
 Rgb estimated_reflection(const Lobe& lobe, float cosine) {
-  const GgxMoments m = ggx_moments(mean_alpha(lobe), cosine);
-  switch (lobe.fresnel) {
-    case FresnelType::Conductor:
-    case FresnelType::ApproximateConductor:
-      return lobe_fresnel(lobe, cosine);
-    case FresnelType::PrincipledMetal:
-      return f82_albedo(m, lobe.f0, Rgb(1.0f)) / m.one;
-    default:
-      return reflected_once(lobe, cosine) / m.one;
+  if (lobe.fresnel == FresnelType::Conductor || lobe.fresnel == FresnelType::ApproximateConductor) {
+    return lobe_fresnel(lobe, cosine);
   }
+  const GgxMoments m = ggx_moments(mean_alpha(lobe), cosine);
+  if (lobe.fresnel == FresnelType::PrincipledMetal) return f82_albedo(m, lobe.f0, Rgb(1.0f)) / m.one;
+  return reflected_once(lobe, cosine) / m.one;
 }
 
 LobeAlbedo dirac_albedo(const Lobe& lobe, float cosine) {
@@ -158,16 +164,14 @@ Rgb multiscatter_energy(const Lobe& lobe, float cosine) {
   }
   const float alpha = mean_alpha(lobe);
   if (sides_of(lobe.type) & kTransmits) {
-    const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
-    const bool alone = sides_of(lobe.type) == kTransmits && lobe.fresnel == FresnelType::None;
-    const float single = std::clamp(alone ? glass.crossing : glass.reflected + glass.transmitted, 0.3f, 1.0f);
+    const float single = std::clamp(colorless_albedo(lobe, alpha, cosine), 0.3f, 1.0f);
     const Rgb color = glm::clamp(lobe.f90 * lobe.transmission_tint, 0.0f, 1.0f);
-    if (alone || color == Rgb(1.0f)) {
+    if (only_crosses(lobe) || color == Rgb(1.0f)) {
       return Rgb(1.0f / single);
     }
     return repeated_bounces(single, glass_mean_albedo(alpha, lobe.ior), color);
   }
-  const float single = std::clamp(ggx_moments(alpha, cosine).one, 0.05f, 1.0f);
+  const float single = std::clamp(colorless_albedo(lobe, alpha, cosine), 0.05f, 1.0f);
   Rgb color = glm::clamp(mean_fresnel(lobe), 0.0f, 1.0f);
   // Cycles before 4.0 multiplies by the colour of each repeated bounce once where it samples its walk, and twice where
   // it evaluates it for lights. The power between them is close to either.
@@ -217,18 +221,11 @@ LobeAlbedo shown_albedo(const Lobe& lobe, float signed_cosine) {
   if (!is_microfacet(lobe.type) || is_dirac(lobe.type)) {
     return two_sided_albedo(lobe, signed_cosine);
   }
-  const float cosine = std::min(std::abs(signed_cosine), 1.0f), alpha = mean_alpha(lobe);
+  const float cosine = std::min(std::abs(signed_cosine), 1.0f);
   const int sides = sides_of(lobe.type);
-  const bool alone = sides == kTransmits && lobe.fresnel == FresnelType::None;
-  float kept = 1.0f;
-  if (lobe.multiscatter && sides == kReflects) {
-    kept = ggx_moments(alpha, cosine).one;
-  } else if (lobe.multiscatter) {
-    const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
-    kept = alone ? glass.crossing : glass.reflected + glass.transmitted;
-  }
+  const float kept = lobe.multiscatter ? colorless_albedo(lobe, mean_alpha(lobe), cosine) : 1.0f;
   const Rgb total = lobe.weight * lobe.energy * kept;  // energy is 1 without multiscatter
-  const Rgb reflected = alone ? Rgb(0.0f) : glm::clamp(estimated_reflection(lobe, cosine), 0.0f, 1.0f);
+  const Rgb reflected = only_crosses(lobe) ? Rgb(0.0f) : glm::clamp(estimated_reflection(lobe, cosine), 0.0f, 1.0f);
   const Rgb transmitted = (Rgb(1.0f) - reflected) * lobe.transmission_tint;
   return {sides & kReflects ? total * reflected : Rgb(0.0f), sides & kTransmits ? total * transmitted : Rgb(0.0f)};
 }
