@@ -33,6 +33,23 @@ _NAMES = {name: name for name in SAME_NAME} | {
 }
 """The name that Cycles has for each setting. The identifiers of pixel filters are the same."""
 
+# Types of nodes with which the light of a world is the same in all directions, so that Cycles does not sample it.
+_SAME_IN_ALL_DIRECTIONS = {
+    "OUTPUT_WORLD",
+    "BACKGROUND",
+    "ADD_SHADER",
+    "MIX_SHADER",
+    "RGB",
+    "VALUE",
+    "MATH",
+    "MIX",
+    "MIX_RGB",
+    "BLACKBODY",
+    "LIGHT_PATH",
+    "REROUTE",
+    "FRAME",
+}
+
 
 def values(scene: Any) -> dict[str, Any]:
     """Returns values for settings of Gradus from the scene's Cycles settings, or {} if Cycles is disabled."""
@@ -171,23 +188,6 @@ def _ignored(scene: Any) -> list[str]:
         "Rolling Shutter": scene.render.use_motion_blur and cycles.rolling_shutter_type != "NONE",
     }
     return [name for name, is_on in switches.items() if is_on]
-
-
-_SAME_IN_ALL_DIRECTIONS = {
-    "OUTPUT_WORLD",
-    "BACKGROUND",
-    "ADD_SHADER",
-    "MIX_SHADER",
-    "RGB",
-    "VALUE",
-    "MATH",
-    "MIX",
-    "MIX_RGB",
-    "BLACKBODY",
-    "LIGHT_PATH",
-    "REROUTE",
-    "FRAME",
-}
 
 
 def _limits_world(scene: Any) -> bool:

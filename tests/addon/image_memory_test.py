@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import bpy
 import numpy as np
 import OpenImageIO as oiio
 from support import images, recording
+from support.memory import MEGABYTE
 from support.nodes import Graph, new_material, show
 
-MEGABYTE = 2**20
+sys.path.append(str(Path(__file__).resolve().parents[2] / "tools" / "bench"))
+from worker_process import peak_bytes, reset_peak  # noqa: E402
+
 SIDE = 8192  # texels per side of the large image, which has 192 MB in bytes
-
-
-def peak_bytes() -> int:
-    """Returns the peak of resident memory since it was reset."""
-    lines = Path("/proc/self/status").read_text().splitlines()
-    return next(int(line.split()[1]) for line in lines if line.startswith("VmHWM")) * 1024
-
-
-def reset_peak() -> None:
-    Path("/proc/self/clear_refs").write_text("5")
 
 
 def add_picture(scene: bpy.types.Scene, file: Path, count: int = 1) -> None:

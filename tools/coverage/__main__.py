@@ -53,7 +53,7 @@ def run(name: str, rows: str, again: bool) -> None:
             counts[outcome["verdict"]] += 1
             stored.write(json.dumps(outcome | {"version": version}) + "\n")
             stored.flush()
-            if outcome["verdict"] not in ("agrees", "no effect", "falls back"):
+            if outcome["verdict"] not in document.AGREEMENT | {"falls back"}:
                 print(f"  {outcome['verdict']}: {outcome['name']}: {outcome['note']}", flush=True)
     table = document.read()
     if rows == "*":

@@ -91,7 +91,7 @@ def sequence_path(path: str, number: int) -> str:
 
 def tile_path(path: str, number: int) -> str:
     """Returns the file of a UDIM tile."""
-    u, v = (number - 1001) % 10 + 1, (number - 1001) // 10 + 1
+    u, v = (number - _FIRST_TILE) % 10 + 1, (number - _FIRST_TILE) // 10 + 1
     return path.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{u}_v{v}")
 
 
@@ -205,7 +205,7 @@ def _tiles(image: Any, frame_number: int | None, abspath: Any, is_boxed: bool) -
         numbers = [_FIRST_TILE] if is_boxed else [tile.number for tile in image.tiles]
         results = [_udim_tile(image, path, number) for number in numbers]
         repeats_until = _BOX_REPEATS_UNTIL if is_boxed else _SINGLE_TILE_REPEATS_UNTIL
-        if len(numbers) == 1 and compat.VERSION < repeats_until:
+        if len(numbers) == 1 and repeats_until > compat.VERSION:
             results[0][0].number = 0
         return [tile for tile, _ in results], any(is_float for _, is_float in results)
     decoded = None

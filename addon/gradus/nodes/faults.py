@@ -81,7 +81,7 @@ def warn_of_refraction(view: NodeView, *roughnesses: Value) -> None:
 
 
 def _may_point_away(view: NodeView, normal: Value) -> bool:
-    """Returns whether a normal is none that lies above the surface: its own, a bump's or a tangent map's."""
+    """Returns whether a normal may point away from the surface, as its own, a bump's and a tangent map's do not."""
     if normal.is_constant:
         return not normal.is_zero()
     op, mode = view.program.nodes[normal.node][:2]
