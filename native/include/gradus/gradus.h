@@ -597,15 +597,18 @@ typedef struct GradusSettings {
                                        = the full frame. [pixels] */
   uint32_t samples;                 /* Samples per pixel. Twice as many take twice as long and halve the squared
                                        error of the sampled picture. With a noise threshold it is the mean over the
-                                       picture: noisy pixel blocks take up to four times as many. */
+                                       picture: noisy pixel blocks take up to four times as many. With REGULARIZED,
+                                       edges between bright and dark surfaces take more, half as many again over the
+                                       picture at most, from 4 samples on; with a noise threshold only of the first
+                                       16. */
   uint32_t min_samples;             /* Minimum samples per pixel before a pixel block may stop at the noise
                                        threshold. Values from 1 to 15 count as 16, which the estimate of the error
                                        needs. 0 = automatic: 16, or 0.16 / noise threshold if that is more. */
   float noise_threshold;            /* A block of 16×16 pixels stops when the estimated relative error of its picture
                                        falls below this; the others share the remaining samples by their noise. Lower
                                        values leave less noise and take longer. 0 = off: every pixel takes the same
-                                       number. It has no effect at 16 samples or fewer. The same value leaves less
-                                       noise than in Cycles. */
+                                       number, apart from edges. It has no effect at 16 samples or fewer. The same
+                                       value leaves less noise than in Cycles. */
   float time_limit;                 /* Seconds of sampling for each frame and view layer, after which the samples
                                        taken so far are reconstructed and delivered. 0 = no limit. [s] */
   uint32_t seed;                    /* Seed of all random numbers. Another seed gives another noise pattern at the
@@ -726,7 +729,7 @@ typedef enum GradusPass {
                                                  Denoise node. */
   GRADUS_PASS_DENOISING_DEPTH = 24,           /* Length of the path to the first non-specular vertex. */
   GRADUS_PASS_SAMPLE_COUNT = 25,              /* Samples of each pixel, as a share of the samples of the settings.
-                                                 Adaptive sampling gives some pixels more than 1. */
+                                                 Adaptive sampling, and edges, give some pixels more than 1. */
   GRADUS_PASS_GRADIENT_X = 26,                /* Sampled difference to the pixel on the right. */
   GRADUS_PASS_GRADIENT_Y = 27,                /* Sampled difference to the pixel above. */
   GRADUS_PASS_VARIANCE = 28,                  /* Estimated variance of Noisy Image. */

@@ -18,6 +18,8 @@
   X(last_row_of_passes_lost)                     \
   X(srgb_decoded_twice)                          \
   X(flat_normals_flipped)                        \
+  X(further_camera_rays_count_in_full)           \
+  X(edges_judge_by_own_samples)                  \
   X(random_stream_shared_by_pixels)              \
   X(cancel_missed_between_samples)               \
   X(cancel_missed_by_render)                     \

@@ -30,6 +30,9 @@ struct WorkUnit {
   const std::vector<uint8_t>* pixel_map = nullptr;
   // 0 for pixels whose paths have no offset paths. Pairs with such a pixel are absent.
   const std::vector<uint8_t>* gradient_map = nullptr;
+  // 1 for pixels whose samples take further camera rays, for the edges of emitters that the camera sees
+  // (path/emission_edges.h). Null or empty if none do. Gradients ignore it.
+  const std::vector<uint8_t>* edge_map = nullptr;
   // Pixels of another frame whose random numbers the pixels replay; null if they use their own.
   const film::ReplayMap* replay_map = nullptr;
   // Components to sample, as bits, of all pixels and of each. The planes of others do not change, and paths that can
@@ -43,6 +46,12 @@ struct WorkUnit {
 class Integrator {
  public:
   virtual ~Integrator() = default;
+  // Returns the pixels of a region whose samples take further camera rays, as WorkUnit::edge_map; empty if none do.
+  // Returns early on `stop`.
+  virtual std::vector<uint8_t> find_edges(const Region& region, const std::atomic<bool>& stop) const {
+    (void)region, (void)stop;
+    return {};
+  }
   // Samples the unit into the film and writes only pixels of the tile. Thread-safe for disjoint tiles. Polls `stop` at
   // least once for each sample of a pixel; a sample that is stopped leaves no trace in the film.
   virtual void sample(const WorkUnit& unit, film::Film* film, film::Counters* counters,

@@ -26,6 +26,11 @@ inline uint32_t unit_count(const WorkUnit& unit, size_t pixel) {
   return unit.count_map != nullptr ? (*unit.count_map)[pixel] : unit.count;
 }
 
+// Returns whether the samples of a pixel take further camera rays.
+inline bool unit_has_edge(const WorkUnit& unit, size_t pixel) {
+  return unit.edge_map != nullptr && !unit.edge_map->empty() && (*unit.edge_map)[pixel] != 0;
+}
+
 // Returns the components that a unit samples in a pixel, as bits.
 inline uint32_t unit_components(const WorkUnit& unit, size_t pixel) {
   return unit.component_map != nullptr ? unit.components & (*unit.component_map)[pixel] : unit.components;

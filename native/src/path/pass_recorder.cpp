@@ -56,6 +56,9 @@ constexpr std::array<uint32_t, 7> kSurfaceData = {
     GRADUS_PASS_DEPTH,  GRADUS_PASS_POSITION, GRADUS_PASS_OBJECT_INDEX, GRADUS_PASS_MATERIAL_INDEX,
     GRADUS_PASS_NORMAL, GRADUS_PASS_UV,       GRADUS_PASS_VECTOR};
 
+constexpr std::array<uint32_t, 3> kFeaturePasses = {GRADUS_PASS_DENOISING_ALBEDO, GRADUS_PASS_DENOISING_NORMAL,
+                                                    GRADUS_PASS_DENOISING_DEPTH};
+
 Vec3 shown_normal(const Vertex& vertex) {
   if (!vertex.shade.closures.empty()) {
     return vertex.shade.closures.average_normal();
@@ -97,16 +100,41 @@ void PassRecorder::begin_sample(size_t pixel, int half, uint32_t number, bool ad
   half_ = half;
   number_ = number;
   first_sample_ = number == context_.settings.first_sample;
-  adds_components_ = adds_components;
   surface_data_done_ = false;
-  features_done_ = !has_features_ || adds_components;
-  seeks_non_specular_ = components_ != nullptr && !adds_components;
-  detail_components_ = vertex_components_ = 0;
-  path_length_ = 0.0f;
-  albedo_ = Rgb(0.0f);
+  adds_components_ = adds_components;
+  begin_camera_ray(false);
+  feature_share_ = 1.0f;
   channels_.begin_sample(pixel, half);
   catchers_.begin_sample(pixel, half, adds_components);
   if (!adds_components) add(GRADUS_PASS_MIST, 1.0f);
+}
+
+void PassRecorder::begin_camera_ray(bool is_further) {
+  is_further_ray_ = is_further;
+  features_done_ = !has_features_ || adds_components_;
+  seeks_non_specular_ = components_ != nullptr && !adds_components_ && !is_further;
+  detail_components_ = vertex_components_ = 0;
+  path_length_ = 0.0f;
+  albedo_ = Rgb(0.0f);
+}
+
+void PassRecorder::begin_further_ray() { begin_camera_ray(true); }
+
+void PassRecorder::begin_path(float feature_share) {
+  begin_camera_ray(false);
+  feature_share_ = feature_share;
+  for (const uint32_t pass : kFeaturePasses) {
+    if (feature_share < 1.0f) add(pass, feature_share * further_features_[pass]);
+    further_features_[pass] = Vec3(0.0f);
+  }
+}
+
+void PassRecorder::add_feature(uint32_t pass, const Vec3& value) {
+  if (is_further_ray_) {
+    further_features_[pass] += value;
+  } else {
+    add(pass, feature_share_ * value);
+  }
 }
 
 void PassRecorder::hole(const Sampler& sampler, const PathState& state, const Vertex& vertex, const Segment& segment) {
@@ -203,7 +231,7 @@ void PassRecorder::surface(const PathState& state, const Vertex& vertex, const S
 }
 
 void PassRecorder::escaped(const PathState& state) {
-  if (!state.shows_background() || adds_components_) {
+  if (!state.shows_background() || adds_components_ || is_further_ray_) {
     return;
   }
   channels_.escaped(state.ray);
@@ -334,8 +362,8 @@ void PassRecorder::features(const PathState& state, const Vertex& vertex) {
   if (plane(GRADUS_PASS_DENOISING_ALBEDO) != nullptr) {
     add_albedo(state.throughput * closures.albedo(vertex.wo));
   }
-  add(GRADUS_PASS_DENOISING_NORMAL, shown_normal(vertex));
-  add(GRADUS_PASS_DENOISING_DEPTH, path_length_);
+  add_feature(GRADUS_PASS_DENOISING_NORMAL, shown_normal(vertex));
+  add_feature(GRADUS_PASS_DENOISING_DEPTH, Vec3(path_length_, 0.0f, 0.0f));
 }
 
 // Returns the components, as bits, of paths whose first non-specular vertex this is: those that scatter here in class
@@ -408,7 +436,7 @@ void PassRecorder::record_emission(int component, const Rgb& light, float furthe
 // Adds to the denoising albedo. The sum of a sample stays in [0, 1], as denoisers expect.
 void PassRecorder::add_albedo(const Rgb& value) {
   const Rgb sum = glm::clamp(albedo_ + value, Rgb(0.0f), Rgb(1.0f));
-  add(GRADUS_PASS_DENOISING_ALBEDO, sum - albedo_);
+  add_feature(GRADUS_PASS_DENOISING_ALBEDO, sum - albedo_);
   albedo_ = sum;
 }
 

@@ -22,6 +22,13 @@ class PassRecorder final : public SurfaceVisitor {
 
   // Prepares for a sample. If `adds_components` is true, everything except light was recorded before.
   void begin_sample(size_t pixel, int half, uint32_t number, bool adds_components = false);
+  // Prepares for a further camera ray of the sample, which has no path. It records light, and remembers its features.
+  void begin_further_ray();
+  // Returns whether the features of a camera ray are complete.
+  bool has_features() const { return features_done_; }
+  // Prepares for the path of the sample after all further rays. Features are the mean over these and the path's ray,
+  // each with the given share, or those of the path's ray for a share of 1.
+  void begin_path(float feature_share);
   // Returns whether surface() and visit() need the closures of the next vertex of a path.
   bool needs_closures(const PathState& state) const {
     return records_data(state) || !features_done_ || seeks_non_specular_;
@@ -69,12 +76,13 @@ class PassRecorder final : public SurfaceVisitor {
   film::Channel* plane(uint32_t pass) const { return planes_[pass]; }
   // Returns whether passes of data show what the path meets next: what shows the film's background, as in Cycles.
   bool records_data(const PathState& state) const {
-    return state.shows_background() && !state.emission_only && !adds_components_;
+    return state.shows_background() && !state.emission_only && !adds_components_ && !is_further_ray_;
   }
   void add(uint32_t pass, const Vec4& value);
   void add(uint32_t pass, const Vec3& value) { add(pass, Vec4(value, 0.0f)); }
   void add(uint32_t pass, float value) { add(pass, Vec4(value, 0.0f, 0.0f, 0.0f)); }
   void add_light(int scatterings, const Rgb& value, const PassShare& share, uint32_t direct_pass);
+  void begin_camera_ray(bool is_further);
   void surface_data(const Vertex& vertex);
   void colors(const Rgb& weight, const Vertex& vertex);
   void ambient_occlusion(const Sampler& sampler, const Rgb& weight, const Vertex& vertex, uint32_t crossed);
@@ -87,6 +95,7 @@ class PassRecorder final : public SurfaceVisitor {
   void background_motion(const Vec3& direction);
   void features(const PathState& state, const Vertex& vertex);
   void add_albedo(const Rgb& value);
+  void add_feature(uint32_t pass, const Vec3& value);
   uint32_t components_of_non_specular(const PathState& state, const Vertex& vertex) const;
   void non_specular_vertex(const PathState& state, const Vertex& vertex);
   void details(const PathState& state, const Vertex& vertex);
@@ -116,8 +125,11 @@ class PassRecorder final : public SurfaceVisitor {
   uint32_t number_ = 0;  // sample number
   bool first_sample_ = false;
   bool adds_components_ = false;
+  bool is_further_ray_ = false;
   bool surface_data_done_ = false;
   bool features_done_ = false;
+  float feature_share_ = 1.0f;
+  std::array<Vec3, GRADUS_PASS_COUNT> further_features_{};  // sums over further rays, of feature passes alone
   float path_length_ = 0.0f;
   Rgb albedo_ = Rgb(0.0f);  // denoising albedo of this sample so far
   size_t pixel_ = 0;

@@ -20,7 +20,16 @@ inline uint32_t combine(uint32_t seed, uint32_t value) {
   return mix(seed ^ (mix(value + 0x9e3779b9u) + (seed << 6) + (seed >> 2)));
 }
 
-enum class StreamKind : uint32_t { Pixel = 0, Pilot = 1, LightPath = 2, Chain = 3, Disocclusion = 4, PixelBlock = 5 };
+enum class StreamKind : uint32_t {
+  Pixel = 0,
+  Pilot = 1,
+  LightPath = 2,
+  Chain = 3,
+  Disocclusion = 4,
+  PixelBlock = 5,
+  EdgeProbe = 6,
+  EdgeRay = 7,
+};
 
 // A random number depends on its key and dimension alone. The film pixel and the time are not in the key: a replayed
 // sample has the pixel and time of its own frame, but the stream of the frame before.

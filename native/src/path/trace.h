@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
+#include "base/fault.h"
 #include "path/camera_vertices.h"
 #include "path/contribution.h"
 #include "path/pass_recorder.h"
@@ -23,6 +25,12 @@ struct PathScratch {
   Segment segment;
   LightSample light;
   ScatterEvent event;
+};
+
+// A position on the film with random numbers of its own.
+struct CameraRay {
+  Sampler sampler;
+  Vec2 film = Vec2(0.0f);
 };
 
 struct PathResult {
@@ -75,12 +83,23 @@ class PathTracer {
   void want(uint32_t components) { wanted_ = components; }
 
   // Traces the path through a position on the full frame's film, pixel filter included. `known` is the vertex that the
-  // camera ray meets, if it is known. The result is valid until the next path.
-  const PathResult& li(const Sampler& sampler, const Vec2& film, CameraVertex* known = nullptr) {
+  // camera ray meets, if it is known. What the camera sees directly, features included, is the mean over the path's
+  // camera ray and `further` ones, which have no path. The result is valid until the next path.
+  const PathResult& li(const Sampler& sampler, const Vec2& film, CameraVertex* known = nullptr,
+                       std::span<const CameraRay> further = {}) {
     start_result();
     alpha() = 1.0f;
+    if (!further.empty()) see_further(further);
     Vertex* vertex = trace_camera_ray(sampler, film, known);
     extend_path(sampler, vertex, Step::Emission);
+    return result_;
+  }
+
+  // Returns the emission that a camera ray finds.
+  const PathResult& see(const CameraRay& ray) {
+    start_result();
+    alpha() = 1.0f;
+    add_seen(ray);
     return result_;
   }
 
@@ -194,6 +213,35 @@ class PathTracer {
 
   // ---- Emission that the path finds ----
 
+  // Adds what the camera sees along a ray. Returns whether a path could scatter at its end.
+  bool add_seen(const CameraRay& ray) {
+    const Vertex* vertex = trace_camera_ray(ray.sampler, ray.film, nullptr);
+    return add_emission(ray.sampler, RaySource{}, *vertex);
+  }
+
+  // Adds the share of further camera rays in what the camera sees. If one of them ends on a mirror or on glass, the
+  // features of which lie behind it, those of the path's ray stand for all.
+  void see_further(std::span<const CameraRay> rays) {
+    camera_share_ = 1.0f / static_cast<float>(rays.size() + 1);
+    bool has_features = true;
+    for (const CameraRay& ray : rays) {
+      if (recorder_ != nullptr) recorder_->begin_further_ray();
+      const bool scatters = add_seen(ray);
+      has_features &= !scatters || recorder_ == nullptr || recorder_->has_features();
+    }
+    if (recorder_ != nullptr) recorder_->begin_path(has_features ? camera_share_ : 1.0f);
+    result_.fallback = false;
+  }
+
+  // Returns the share of a camera ray in what the camera sees directly, 1 for all that paths find behind its end.
+  float share() const {
+    return state_.depth == 0 && !GRADUS_FAULT(further_camera_rays_count_in_full) ? camera_share_ : 1.0f;
+  }
+  Contribution shared(Contribution c) const {
+    c.clamped *= share();
+    return c;
+  }
+
   // Adds the emission on the last segment and at its end. Returns whether the path can scatter there.
   bool add_emission(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
     observer_.on_segment(source, state_, *segment_, vertex);
@@ -215,7 +263,7 @@ class PathTracer {
 
   void add_analytic_lights(const RaySource& source) {
     for (const LightCrossing& crossing : segment_->light_crossings) {
-      const Contribution c = light_hit_contribution(context_, source, state_, crossing);
+      const Contribution c = shared(light_hit_contribution(context_, source, state_, crossing));
       if (recorder_ != nullptr)
         recorder_->record_light(state_.throughput * crossing.weight, c.component, c.light, crossing.distance);
       if (!is_black(c.clamped)) {
@@ -229,7 +277,7 @@ class PathTracer {
   void add_world(const RaySource& source) {
     if (recorder_ != nullptr) recorder_->escaped(state_);
     if (meets_film_background(context_, state_.ray.state)) return add_film_background(source);
-    const Contribution c = world_contribution(context_, source, state_);
+    const Contribution c = shared(world_contribution(context_, source, state_));
     if (recorder_ != nullptr) recorder_->record_light(state_.throughput, c.component, c.light, kInfinity);
     if (!is_black(c.clamped)) {
       add(c);
@@ -243,7 +291,7 @@ class PathTracer {
   void add_film_background(const RaySource& source) {
     add_transparency(mean_component(state_.throughput));
     if (recorder_ == nullptr || !recorder_->records_film_background()) return;
-    const Contribution c = film_background_contribution(context_, source, state_);
+    const Contribution c = shared(film_background_contribution(context_, source, state_));
     if (records(c)) recorder_->film_background(state_.throughput, c.light, c.clamped);
   }
 
@@ -259,7 +307,7 @@ class PathTracer {
       add_transparency(holdout_alpha(state_.throughput, vertex.shade.holdout));
     }
     if (recorder_ != nullptr) recorder_->surface(state_, vertex, *segment_);
-    const Contribution c = emission_contribution(context_, source, state_, vertex);
+    const Contribution c = shared(emission_contribution(context_, source, state_, vertex));
     if (recorder_ != nullptr) recorder_->record_emission(c.component, c.light);
     if (!is_black(c.clamped)) {
       add(c);
@@ -348,6 +396,7 @@ class PathTracer {
   void start_result() {
     std::fill_n(result_.radiance.begin(), context_.components.count(), Radiance(0.0f));
     result_.fallback = false;
+    camera_share_ = 1.0f;
   }
 
   // Returns the alpha of the film.
@@ -355,7 +404,7 @@ class PathTracer {
 
   void add_transparency(float value) {
     if (value != 0.0f) {
-      alpha() -= value;
+      alpha() -= value * share();
       observer_.on_transparency(value);
     }
   }
@@ -378,6 +427,7 @@ class PathTracer {
   PathState state_;                   // state at the end of the path
   geometry::Hit next_hit_;            // nearest hit of the ray that leaves the latest vertex
   const Segment* segment_ = nullptr;  // last segment of the path
+  float camera_share_ = 1.0f;         // of each camera ray of the path in what the camera sees
   PathResult result_;
 };
 

@@ -7,6 +7,19 @@
 
 namespace gradus::render {
 
+namespace {
+
+// Returns the number of samples that all pixels of a block have, whatever those at edges have besides.
+uint32_t usual_samples(const film::Film& film, const Region& block) {
+  uint32_t least = UINT32_MAX;
+  for (int32_t y = block.y0; y < block.y1; ++y) {
+    for (int32_t x = block.x0; x < block.x1; ++x) least = std::min(least, film::samples_at(film, film.index(x, y)));
+  }
+  return least;
+}
+
+}  // namespace
+
 AdaptiveSampling::AdaptiveSampling(const film::Film& film, float threshold, uint32_t first_check)
     : region_(film.region),
       first_sample_(film.settings.first_sample),
@@ -16,9 +29,7 @@ AdaptiveSampling::AdaptiveSampling(const film::Film& film, float threshold, uint
       rays_(grid_.blocks.size(), 0),
       spread_(grid_.blocks.size(), 1.0),
       stopped_(grid_.blocks.size(), 0) {
-  for (const Region& block : grid_.blocks) {
-    taken_.push_back(film::samples_at(film, film.index(block.x0, block.y0)));
-  }
+  for (const Region& block : grid_.blocks) taken_.push_back(usual_samples(film, block));
   const bool continues = !film.shared.rays.empty();
   uncounted_ = continues ? film.shared.uncounted : taken_.front();
   if (!continues) return;

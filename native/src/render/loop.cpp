@@ -12,6 +12,7 @@
 #include "output/developer.h"
 #include "render/batches.h"
 #include "render/develop.h"
+#include "render/edge_sampling.h"
 #include "render/memory_estimate.h"
 #include "render/resume.h"
 #include "render/small_components.h"
@@ -241,7 +242,7 @@ void RenderLoop::sample() {
   first_begin_ = begin;
   sampler_ = std::make_unique<TileSampler>(
       *integrator_, film::make_pixel_blocks(plan_.sampled, tile_side(plan_.sampled, input_.threads)), gradients_,
-      adaptive_.get(), input_.replay.get(), stop_, film_.get());
+      edges_, adaptive_.get(), input_.replay.get(), stop_, film_.get());
   tracker_.set_samples(begin);
   work_done_ = uint64_t(begin) * uint64_t(plan_.sampled.area());
   for (uint32_t end = 0; next_batch(begin, &end); begin = end) {
@@ -249,11 +250,13 @@ void RenderLoop::sample() {
     if (is_done()) film_->shared = adaptive_->state(begin);  // so that a later render can continue from it
     if (cancel() || is_done()) break;
     if (show_is_due(begin)) show(begin);
+    if (begin == first_begin_) find_edges();
     if (cancel()) break;
     if (adaptive_) adaptive_->start_batch(end - begin);
     film_->samples.add({first + begin, first + (adaptive_ ? adaptive_->max_taken() : end)});
     film_->shared = {};
     run_batch(begin, end);
+    if (!cancel() && refines_edges(end)) sample_edges(end);
     if (cancel()) break;
     if (adaptive_) film_->shared = adaptive_->state(end);
     tracker_.set_samples(end);
@@ -268,12 +271,41 @@ void RenderLoop::sample() {
   if (const std::string text = fault_warning(*input_.snapshot); !text.empty()) stats_.warnings.push_back(text);
 }
 
+void RenderLoop::find_edges() {
+  if (input_.meets_replays()) return;
+  const uint64_t cpu = process_cpu_nanoseconds();
+  edges_ = arena_.execute([&] { return integrator_->find_edges(plan_.sampled, stop_); });
+  stats_.cpu_seconds.sample += 1e-9 * double(process_cpu_nanoseconds() - cpu);
+}
+
 void RenderLoop::run_batch(uint32_t begin, uint32_t end) {
+  sampler_->start_batch(begin, end);
+  finish_batch(begin);
+}
+
+// A noise threshold shares the samples by noise from kMaxBatch on. Replayed samples have no further ones, and those
+// that they are compared with have none either.
+bool RenderLoop::refines_edges(uint32_t end) const {
+  const bool shares_by_noise = input_.settings.noise_threshold > 0.0f && end > kMaxBatch;
+  return film_->settings.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED && gradients_.none() &&
+         !input_.meets_replays() && !shares_by_noise && end >= kEdgeCheck && is_batch_end(end);
+}
+
+void RenderLoop::sample_edges(uint32_t end) {
+  const uint32_t begin = end > kEdgeCheck ? batch_begin(end) : 0;
+  if (affordable_samples(end) < (end - begin + 1) / 2) return;
+  std::vector<uint32_t> counts;
+  arena_.execute([&] { counts = further_samples_at_edges(*film_, end - begin); });
+  if (counts.empty()) return;
+  sampler_->start_counted_batch(first_further_sample(input_.settings.first_sample + begin), &counts);
+  finish_batch(end);
+}
+
+void RenderLoop::finish_batch(uint32_t begin) {
   const auto after_tile = [&](const Region& tile, uint64_t pixel_samples) {
     tile_done(tile, pixel_samples);
     return show_is_due(begin);
   };
-  sampler_->start_batch(begin, end);
   for (;;) {
     bool is_whole = false;
     arena_.execute([&] { is_whole = sampler_->run(after_tile); });

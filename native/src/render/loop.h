@@ -61,7 +61,15 @@ class RenderLoop final : public RenderTask {
   uint32_t affordable_samples(uint32_t begin) const;
   // Estimates the noise of the blocks, stops those below the threshold and updates how the others share samples.
   void judge();
+  // Finds the pixels at edges of emitters, whose paths take further camera rays.
+  void find_edges();
   void run_batch(uint32_t begin, uint32_t end);
+  // Takes further samples at edges (render/edge_sampling.h) if a whole batch ends at `end`. They have numbers of their
+  // own, so that a render that goes on from the film takes the same ones.
+  void sample_edges(uint32_t end);
+  bool refines_edges(uint32_t end) const;
+  // Runs the batch that the sampler has started, and makes previews in between.
+  void finish_batch(uint32_t begin);
   void tile_done(const Region& tile, uint64_t pixel_samples);
   // Returns whether the preview (render/preview.h) has a new image to show, before the samples from `begin` on are
   // taken or between two of their tiles.
@@ -84,6 +92,7 @@ class RenderLoop final : public RenderTask {
   std::shared_ptr<film::Film> film_;
   std::unique_ptr<integrator::Integrator> integrator_;
   GradientMap gradients_;
+  std::vector<uint8_t> edges_;  // WorkUnit::edge_map
   lpe::ComponentSet components_;
   std::unique_ptr<AdaptiveSampling> adaptive_;  // nullptr if the render is not adaptive
 

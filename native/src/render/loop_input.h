@@ -34,6 +34,8 @@ struct LoopInput {
   uint32_t whole_samples = 0;
   std::shared_ptr<const Replay> replay;  // nullptr: the samples are the frame's own
 
+  // Returns whether the samples are replayed, or compared with replayed ones.
+  bool meets_replays() const { return replay || whole_samples > settings.samples; }
   // Returns the settings for which the render is planned.
   GradusSettings planned_settings() const {
     GradusSettings planned = settings;

@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/text_list.h"
 #include "film/film.h"
-#include "film/pixel_blocks.h"
 #include "film/planes.h"
 #include "film/scene_channels.h"
 #include "schema/options.h"
@@ -45,18 +44,12 @@ void check_gradients(const film::Film& film, bool wanted) {
 }
 
 uint32_t resumed_samples(const film::Film& film, bool adaptively) {
-  const bool by_blocks = adaptively && !film.shared.rays.empty();
-  for (const Region& part : by_blocks ? film::make_pixel_blocks(film.region) : std::vector<Region>{film.region}) {
-    const uint32_t first = film::samples_at(film, film.index(part.x0, part.y0));
-    for (int32_t y = part.y0; y < part.y1; ++y) {
-      for (int32_t x = part.x0; x < part.x1; ++x) {
-        if (film::samples_at(film, film.index(x, y)) == first) continue;
-        throw invalid_argument("the film's pixels differ in their sample counts: a render cannot continue from it");
-      }
-    }
-  }
-  if (by_blocks) return film.shared.mean;
-  return film.region.area() > 0 ? film::samples_at(film, 0) : 0;
+  if (adaptively && !film.shared.rays.empty()) return film.shared.mean;
+  const std::vector<uint32_t> counts = film::samples_of_pixels(film);
+  const uint32_t usual = counts.empty() ? 0 : *std::ranges::min_element(counts);
+  if (!counts.empty() && usual != film.samples.total())
+    throw invalid_argument("the film's pixels differ in their sample counts: a render cannot continue from it");
+  return usual;
 }
 
 lpe::ComponentSet resumed_components(const film::Film& film, const Plan& plan) {

@@ -14,10 +14,12 @@ uint64_t rays_of(const film::Counters& c) {
   return c.rays_primary + c.rays_bounce + c.rays_shadow + c.rays_shift + c.rays_shift_shadow;
 }
 
-bool has_pixels(const std::vector<uint8_t>& pixels, const Region& tile, const Region& region) {
+// Returns whether any pixel of a tile has a value other than 0.
+template <class T>
+bool has_pixels(const std::vector<T>& pixels, const Region& tile, const Region& region) {
   for (int32_t y = tile.y0; y < tile.y1; ++y) {
     const auto row = pixels.begin() + ptrdiff_t(y - region.y0) * region.width() + (tile.x0 - region.x0);
-    if (std::find(row, row + tile.width(), 1) != row + tile.width()) return true;
+    if (std::any_of(row, row + tile.width(), [](T value) { return value != 0; })) return true;
   }
   return false;
 }
@@ -25,11 +27,12 @@ bool has_pixels(const std::vector<uint8_t>& pixels, const Region& tile, const Re
 }  // namespace
 
 TileSampler::TileSampler(const integrator::Integrator& integrator, std::vector<Region> tiles,
-                         const GradientMap& gradients, AdaptiveSampling* adaptive, const Replay* replay,
-                         const std::atomic<bool>& stop, film::Film* film)
+                         const GradientMap& gradients, const std::vector<uint8_t>& edges, AdaptiveSampling* adaptive,
+                         const Replay* replay, const std::atomic<bool>& stop, film::Film* film)
     : integrator_(integrator),
       tiles_(std::move(tiles)),
       gradients_(gradients),
+      edges_(edges),
       adaptive_(adaptive),
       replay_(replay),
       stop_(stop),
@@ -39,7 +42,15 @@ TileSampler::TileSampler(const integrator::Integrator& integrator, std::vector<R
 void TileSampler::start_batch(uint32_t begin, uint32_t end) {
   begin_ = begin;
   end_ = end;
+  counts_ = nullptr;
   done_.assign(tiles_.size(), 0);
+}
+
+void TileSampler::start_counted_batch(uint32_t first, const std::vector<uint32_t>* counts) {
+  start_batch(first - first_sample_, first - first_sample_);
+  counts_ = counts;
+  std::ranges::transform(tiles_, done_.begin(),
+                         [&](const Region& tile) { return !has_pixels(*counts, tile, film_->region); });
 }
 
 bool TileSampler::run(const AfterTile& after_tile) {
@@ -55,9 +66,12 @@ bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
   unit.first_sample = first_sample_ + begin_;
   unit.count = end_ - begin_;
   if (!gradients_.all() && !gradients_.none()) unit.gradient_map = &gradients_.pixels;
+  unit.edge_map = &edges_;
+  unit.count_map = counts_;
   if (replay_ != nullptr) unit.replay_map = &replay_->replay_map;
   if (replay_ != nullptr && !replay_->counts.empty()) unit.count_map = &replay_->counts;
-  const film::Counters counters = adaptive_            ? sample_blocks(unit)
+  const film::Counters counters = counts_ != nullptr   ? sample(unit)
+                                  : adaptive_          ? sample_blocks(unit)
                                   : replay_ != nullptr ? sample_replay(unit)
                                                        : sample(unit);
   done_[tile] = 1;

@@ -19,10 +19,14 @@ class TileSampler {
   // All arguments must outlive the object. `adaptive` is nullptr if all pixels take the same number of samples.
   // `replay` is nullptr if the samples are fresh ones of the frame.
   TileSampler(const integrator::Integrator& integrator, std::vector<Region> tiles, const GradientMap& gradients,
-              AdaptiveSampling* adaptive, const Replay* replay, const std::atomic<bool>& stop, film::Film* film);
+              const std::vector<uint8_t>& edges, AdaptiveSampling* adaptive, const Replay* replay,
+              const std::atomic<bool>& stop, film::Film* film);
 
   // Starts the batch of samples [begin, end) of each pixel; in adaptive renders `end - begin` samples on average.
   void start_batch(uint32_t begin, uint32_t end);
+  // Starts a batch of counts[pixel] samples of each pixel, which begin with the sample number `first`, whatever the
+  // first sample of the render. `counts` must outlive it.
+  void start_counted_batch(uint32_t first, const std::vector<uint32_t>* counts);
   // Called after each tile, on the thread that sampled it. Returns true to pause.
   using AfterTile = std::function<bool(const Region& tile, uint64_t pixel_samples)>;
   // Continues the batch in the caller's task arena. Returns false if it is not complete, because it paused or was
@@ -40,6 +44,7 @@ class TileSampler {
   const integrator::Integrator& integrator_;
   const std::vector<Region> tiles_;
   const GradientMap& gradients_;
+  const std::vector<uint8_t>& edges_;
   AdaptiveSampling* const adaptive_;
   const Replay* const replay_;
   const std::atomic<bool>& stop_;
@@ -47,7 +52,8 @@ class TileSampler {
   const uint32_t first_sample_;
 
   uint32_t begin_ = 0, end_ = 0;
-  std::vector<uint8_t> done_;  // by tile: 1 if the batch has its samples
+  const std::vector<uint32_t>* counts_ = nullptr;  // samples of each pixel in place of end_ − begin_
+  std::vector<uint8_t> done_;                      // by tile: 1 if the batch has its samples
   std::atomic<uint64_t> cpu_{0};
   std::mutex counters_mutex_;
 };

@@ -43,7 +43,9 @@ constexpr Option kOptions[] = {
            "Height of the full frame."),
     OPTION(samples, GRADUS_OPTION_INT, 64, 1, 16777216, {}, false,
            "Samples per pixel. Twice as many take twice as long and halve the squared error of the sampled picture. "
-           "With a noise threshold it is the mean over the picture: noisy pixel blocks take up to four times as many."),
+           "With a noise threshold it is the mean over the picture: noisy pixel blocks take up to four times as many."
+           " With REGULARIZED, edges between bright and dark surfaces take more, half as many again over the picture "
+           "at most, from 4 samples on; with a noise threshold only of the first 16."),
     OPTION(min_samples, GRADUS_OPTION_INT, 0, 0, 16777216, {}, false,
            "Minimum samples per pixel before a pixel block may stop at the noise threshold. Values from 1 to 15 count"
            " as 16, which the estimate of the error needs. 0 = automatic: 16, or 0.16 / noise threshold if that is "
@@ -51,8 +53,8 @@ constexpr Option kOptions[] = {
     OPTION(noise_threshold, GRADUS_OPTION_FLOAT, 0.01, 0, 3.4e+38, {}, false,
            "A block of 16×16 pixels stops when the estimated relative error of its picture falls below this; the "
            "others share the remaining samples by their noise. Lower values leave less noise and take longer. 0 = "
-           "off: every pixel takes the same number. It has no effect at 16 samples or fewer. The same value leaves "
-           "less noise than in Cycles."),
+           "off: every pixel takes the same number, apart from edges. It has no effect at 16 samples or fewer. The "
+           "same value leaves less noise than in Cycles."),
     OPTION(time_limit, GRADUS_OPTION_FLOAT, 0, 0, 3.4e+38, {}, false,
            "Seconds of sampling for each frame and view layer, after which the samples taken so far are reconstructed"
            " and delivered. 0 = no limit."),

