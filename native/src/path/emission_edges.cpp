@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/fpu.h"
+#include "shading/material.h"
 
 namespace gradus::path {
 
