@@ -1,6 +1,7 @@
 // Rectangles of film pixels, and the value of a pixel.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "base/types.h"
@@ -14,6 +15,8 @@ struct Region {
   int32_t height() const { return y1 - y0; }
   int64_t area() const { return int64_t(width()) * height(); }
   bool contains(int32_t x, int32_t y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+  // Returns the index of a pixel in row-major order.
+  size_t index(int32_t x, int32_t y) const { return size_t(y - y0) * size_t(width()) + size_t(x - x0); }
   bool operator==(const Region&) const = default;
 };
 

@@ -113,9 +113,7 @@ class Film {
   Film(uint32_t full_width, uint32_t full_height, const Region& region, int color_channels, int components,
        bool gradients);
 
-  size_t index(int32_t x, int32_t y) const {
-    return size_t(y - region.y0) * size_t(region.width()) + size_t(x - region.x0);
-  }
+  size_t index(int32_t x, int32_t y) const { return region.index(x, y); }
   // Returns the size of all planes in bytes.
   uint64_t memory_bytes() const;
 

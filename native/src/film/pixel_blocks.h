@@ -48,7 +48,7 @@ void for_each_around(const PixelBlockGrid& grid, size_t block, Visit&& visit) {
 template <class T>
 void fill(const Region& part, const Region& region, T value, std::vector<T>* map) {
   for (int32_t y = part.y0; y < part.y1; ++y) {
-    const size_t first = size_t(y - region.y0) * size_t(region.width()) + size_t(part.x0 - region.x0);
+    const size_t first = region.index(part.x0, y);
     std::fill_n(map->begin() + ptrdiff_t(first), part.width(), value);
   }
 }

@@ -31,7 +31,7 @@ struct WorkUnit {
   // 0 for pixels whose paths have no offset paths. Pairs with such a pixel are absent.
   const std::vector<uint8_t>* gradient_map = nullptr;
   // 1 for pixels whose samples take further camera rays, for the edges of emitters that the camera sees
-  // (path/emission_edges.h). Null or empty if none do. Gradients ignore it.
+  // (path/emission_edges.h). Null if none do. Gradients ignore it.
   const std::vector<uint8_t>* edge_map = nullptr;
   // Pixels of another frame whose random numbers the pixels replay; null if they use their own.
   const film::ReplayMap* replay_map = nullptr;

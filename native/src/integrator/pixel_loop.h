@@ -28,7 +28,7 @@ inline uint32_t unit_count(const WorkUnit& unit, size_t pixel) {
 
 // Returns whether the samples of a pixel take further camera rays.
 inline bool unit_has_edge(const WorkUnit& unit, size_t pixel) {
-  return unit.edge_map != nullptr && !unit.edge_map->empty() && (*unit.edge_map)[pixel] != 0;
+  return unit.edge_map != nullptr && (*unit.edge_map)[pixel] != 0;
 }
 
 // Returns the components that a unit samples in a pixel, as bits.

@@ -29,10 +29,7 @@ struct Probe {
 struct Probes {
   explicit Probes(const Region& r)
       : region{r.x0 - 2, r.y0 - 2, r.x1 + 2, r.y1 + 2}, values(static_cast<size_t>(region.area())) {}
-  Probe& at(int32_t x, int32_t y) {
-    return values[static_cast<size_t>(y - region.y0) * static_cast<size_t>(region.width()) +
-                  static_cast<size_t>(x - region.x0)];
-  }
+  Probe& at(int32_t x, int32_t y) { return values[region.index(x, y)]; }
 
   Region region;
   std::vector<Probe> values;
@@ -169,9 +166,8 @@ std::vector<uint8_t> find_emission_edges(const PathContext& context, const Regio
   std::vector<uint8_t> edges(static_cast<size_t>(region.area()));
   for (int32_t y = region.y0; y < region.y1; ++y) {
     for (int32_t x = region.x0; x < region.x1; ++x) {
-      edges[static_cast<size_t>(y - region.y0) * static_cast<size_t>(region.width()) +
-            static_cast<size_t>(x - region.x0)] =
-          is_beside_other_emission(&probes, x, y) && is_dim_beside_emission(&probes, x, y);
+      const bool is_beside = probes.at(x, y).light >= 0.0f;  // other emission
+      edges[region.index(x, y)] = is_beside && is_dim_beside_emission(&probes, x, y);
     }
   }
   return edges;

@@ -1,4 +1,4 @@
-// Finds the edges of emitters that the camera sees: windows, lamps, and what stands before the sky.
+// Finds the edges of emitters that the camera sees: windows, lights, and what stands before the sky.
 //
 // There a pixel is as bright as the part of it that the emitter covers, which a few camera rays hardly tell, and what
 // is wrong by a little is many times the light beside it. Emission at the end of a camera ray needs no path. In pixels

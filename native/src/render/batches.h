@@ -20,8 +20,9 @@ inline uint32_t batch_end(uint32_t begin, uint32_t samples) {
   return std::min(end, samples);
 }
 
-// Returns whether a batch ends there in every render that goes so far, and where that batch begins.
-inline bool is_batch_end(uint32_t end) { return end > 0 && batch_end(end - 1, end) == batch_end(end - 1, UINT32_MAX); }
+// Returns whether a batch ends at `end` > 0 in every render of so many samples.
+inline bool is_batch_end(uint32_t end) { return batch_end(end - 1, UINT32_MAX) == end; }
+// Returns where that batch begins.
 inline uint32_t batch_begin(uint32_t end) { return end <= kMaxBatch ? end / 2 : end - kMaxBatch; }
 
 // Returns the number of the first further sample (render/edge_sampling.h) behind a whole batch whose first sample has

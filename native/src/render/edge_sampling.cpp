@@ -11,6 +11,7 @@
 #include "base/fault.h"
 #include "base/fpu.h"
 #include "film/features.h"
+#include "reconstruct/box_mean.h"
 #include "render/batches.h"
 
 namespace gradus::render {
@@ -56,7 +57,8 @@ class Surroundings {
     float high = 0.0f, low = std::numeric_limits<float>::max();
     for_around(x, y, [&](size_t i) {
       const bool excludes_own = !GRADUS_FAULT(edges_judge_by_own_samples);
-      const float mean = float(excludes_own ? (sum_[i] - light_[own]) / (count_[i] - 1.0) : sum_[i] / count_[i]);
+      const double count = count_around(i);
+      const float mean = float(excludes_own ? (sum_[i] - light_[own]) / (count - 1.0) : sum_[i] / count);
       high = std::max(high, mean);
       low = std::min(low, mean);
     });
@@ -75,6 +77,12 @@ class Surroundings {
     }
   }
 
+  // Returns how many of the 3×3 pixels around one lie in the film.
+  int count_around(size_t i) const {
+    const int x = int(i % size_t(width_)), y = int(i / size_t(width_));
+    return reconstruct::count_within(x, 1, width_) * reconstruct::count_within(y, 1, height_);
+  }
+
   void read_light(const film::Film& film) {
     light_.resize(size_t(film.region.area()));
     tbb::parallel_for(0, height_, [&](int y) {
@@ -88,14 +96,8 @@ class Surroundings {
       }
     });
     sum_.resize(light_.size());
-    count_.resize(light_.size());
     tbb::parallel_for(0, height_, [&](int y) {
-      for (int x = 0; x < width_; ++x) {
-        for_around(x, y, [&](size_t i) {
-          sum_[index(x, y)] += light_[i];
-          count_[index(x, y)] += 1.0f;
-        });
-      }
+      for (int x = 0; x < width_; ++x) for_around(x, y, [&](size_t i) { sum_[index(x, y)] += light_[i]; });
     });
   }
 
@@ -113,7 +115,6 @@ class Surroundings {
   std::vector<float> light_;
   // Sums over 3×3 pixels. In double, a bright pixel can be taken out of them again.
   std::vector<double> sum_;
-  std::vector<float> count_;
   std::vector<std::array<float, kFeatures>> features_;
 };
 

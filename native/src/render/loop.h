@@ -64,10 +64,10 @@ class RenderLoop final : public RenderTask {
   // Finds the pixels at edges of emitters, whose paths take further camera rays.
   void find_edges();
   void run_batch(uint32_t begin, uint32_t end);
-  // Takes further samples at edges (render/edge_sampling.h) if a whole batch ends at `end`. They have numbers of their
-  // own, so that a render that goes on from the film takes the same ones.
-  void sample_edges(uint32_t end);
+  // Returns whether edges take further samples (render/edge_sampling.h) behind the batch that ends at `end`.
   bool refines_edges(uint32_t end) const;
+  // Takes them. They have numbers of their own, so that a render that is resumed from the film takes the same ones.
+  void sample_edges(uint32_t end);
   // Runs the batch that the sampler has started, and makes previews in between.
   void finish_batch(uint32_t begin);
   void tile_done(const Region& tile, uint64_t pixel_samples);

@@ -24,7 +24,7 @@ void Picture::show_tile(const film::Film& film, const Region& tile) {
   const size_t row = 4 * size_t(part.width());
   const std::lock_guard lock(mutex_);
   for (int32_t y = part.y0; y < part.y1; ++y) {
-    const size_t to = 4 * (size_t(y - region.y0) * size_t(region.width()) + size_t(part.x0 - region.x0));
+    const size_t to = 4 * region.index(part.x0, y);
     std::copy_n(rgba.data() + size_t(y - part.y0) * row, row, tiles_.data() + to);
   }
 }

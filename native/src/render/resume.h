@@ -12,7 +12,7 @@ namespace gradus::render {
 // Returns the number of samples that every pixel of the film has, apart from further ones at edges; to continue
 // adaptively, the mean over the pixels that have not stopped. Throws `invalid_argument` if pixels differ for another
 // reason (a cancelled film, or a sum of adaptive ones). A film that was cancelled, or met its time limit, while edges
-// took further samples goes on without the rest of these.
+// took further samples is continued without the rest of these.
 uint32_t resumed_samples(const film::Film& film, bool adaptively);
 // Returns the components of a render that continues from the film. Components of the plan that the film merged into the
 // remainder are merged again.

@@ -18,7 +18,7 @@ uint64_t rays_of(const film::Counters& c) {
 template <class T>
 bool has_pixels(const std::vector<T>& pixels, const Region& tile, const Region& region) {
   for (int32_t y = tile.y0; y < tile.y1; ++y) {
-    const auto row = pixels.begin() + ptrdiff_t(y - region.y0) * region.width() + (tile.x0 - region.x0);
+    const auto row = pixels.begin() + ptrdiff_t(region.index(tile.x0, y));
     if (std::any_of(row, row + tile.width(), [](T value) { return value != 0; })) return true;
   }
   return false;
@@ -66,7 +66,7 @@ bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
   unit.first_sample = first_sample_ + begin_;
   unit.count = end_ - begin_;
   if (!gradients_.all() && !gradients_.none()) unit.gradient_map = &gradients_.pixels;
-  unit.edge_map = &edges_;
+  if (!edges_.empty()) unit.edge_map = &edges_;
   unit.count_map = counts_;
   if (replay_ != nullptr) unit.replay_map = &replay_->replay_map;
   if (replay_ != nullptr && !replay_->counts.empty()) unit.count_map = &replay_->counts;

@@ -149,7 +149,7 @@ TEST_F(EdgesOfARender, AreSampledAsInOneRenderAfterResuming) {
     EXPECT_TRUE(test::same_samples(*sampled(32, sampled(first)), *whole)) << first;
 }
 
-// A noise threshold shares samples by noise from the 16th on, also in a render that goes on from fewer.
+// A noise threshold shares samples by noise from the 16th on, also in a render that is resumed from fewer.
 TEST_F(EdgesOfARender, AreSampledAsInOneRenderWithANoiseThreshold) {
   settings_.noise_threshold = 1e-4f;
   const auto whole = sampled(48);
