@@ -67,6 +67,8 @@ std::string fault_warning(const scene::Snapshot& snapshot) {
   return "light, closures or bumps of '" + names[0] + "'" + others + " were left out where they are not finite";
 }
 
+// Further samples at edges over usual ones, as the progress expects them.
+constexpr double kUsualShareAtEdges = 0.25;
 // Number of samples from which every pixel has samples in both half-buffers, which the reconstruction needs.
 constexpr uint32_t kBothHalves = 2;
 
@@ -283,12 +285,16 @@ void RenderLoop::run_batch(uint32_t begin, uint32_t end) {
   finish_batch(begin);
 }
 
-// A noise threshold shares the samples by noise from kMaxBatch on. Replayed samples have no further ones, and those
-// that they are compared with have none either.
+// A noise threshold shares the samples by noise from kMaxBatch on.
 bool RenderLoop::refines_edges(uint32_t end) const {
   const bool shares_by_noise = input_.settings.noise_threshold > 0.0f && end > kMaxBatch;
+  return may_refine_edges() && !shares_by_noise && end >= kEdgeCheck && is_batch_end(end);
+}
+
+// Replayed samples have no further ones, and those that they are compared with have none either.
+bool RenderLoop::may_refine_edges() const {
   return film_->settings.reconstruction == GRADUS_RECONSTRUCTION_REGULARIZED && gradients_.none() &&
-         !input_.meets_replays() && !shares_by_noise && end >= kEdgeCheck && is_batch_end(end);
+         !input_.meets_replays();
 }
 
 void RenderLoop::sample_edges(uint32_t end) {
@@ -334,7 +340,8 @@ void RenderLoop::show(uint32_t begin) {
 void RenderLoop::tile_done(const Region& tile, uint64_t pixel_samples) {
   picture_.show_tile(*film_, tile);
   const uint64_t done = work_done_ += pixel_samples;
-  const double whole = double(plan_.sampled.area()) * input_.settings.samples;
+  const double further = may_refine_edges() ? kUsualShareAtEdges : 0.0,
+               whole = (1.0 + further) * double(plan_.sampled.area()) * input_.settings.samples;
   double fraction = double(done) / whole;
   const double sampled = sampling_.seconds();
   if (input_.settings.time_limit > 0.0f) fraction = std::max(fraction, sampled / input_.settings.time_limit);

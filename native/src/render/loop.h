@@ -66,6 +66,8 @@ class RenderLoop final : public RenderTask {
   void run_batch(uint32_t begin, uint32_t end);
   // Returns whether edges take further samples (render/edge_sampling.h) behind the batch that ends at `end`.
   bool refines_edges(uint32_t end) const;
+  // Returns whether the render is of a kind whose edges may take further samples.
+  bool may_refine_edges() const;
   // Takes them. They have numbers of their own, so that a render that is resumed from the film takes the same ones.
   void sample_edges(uint32_t end);
   // Runs the batch that the sampler has started, and makes previews in between.

@@ -1,6 +1,7 @@
 #include "render/tile_sampler.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/clock.h"
 #include "base/fpu.h"
@@ -22,6 +23,16 @@ bool has_pixels(const std::vector<T>& pixels, const Region& tile, const Region& 
     if (std::any_of(row, row + tile.width(), [](T value) { return value != 0; })) return true;
   }
   return false;
+}
+
+// Returns the sum of the values of the pixels of a tile.
+uint64_t sum_of(const std::vector<uint32_t>& pixels, const Region& tile, const Region& region) {
+  uint64_t sum = 0;
+  for (int32_t y = tile.y0; y < tile.y1; ++y) {
+    const auto row = pixels.begin() + ptrdiff_t(region.index(tile.x0, y));
+    sum = std::accumulate(row, row + tile.width(), sum);
+  }
+  return sum;
 }
 
 }  // namespace
@@ -75,7 +86,9 @@ bool TileSampler::sample_tile(size_t tile, const AfterTile& after_tile) {
                                   : replay_ != nullptr ? sample_replay(unit)
                                                        : sample(unit);
   done_[tile] = 1;
-  const bool pause = after_tile(unit.tile, uint64_t(unit.tile.area()) * unit.count);
+  const uint64_t samples =
+      counts_ != nullptr ? sum_of(*counts_, unit.tile, film_->region) : uint64_t(unit.tile.area()) * unit.count;
+  const bool pause = after_tile(unit.tile, samples);
   const std::lock_guard lock(counters_mutex_);
   film_->counters.add(counters);
   return pause;

@@ -8,6 +8,7 @@
 
 #include "render/batches.h"
 #include "render/fake_integrator.h"
+#include "render/resume.h"
 #include "render/scene_render.h"
 #include "schema/options.h"
 
@@ -167,6 +168,31 @@ TEST_F(EdgesOfARender, LetAnAdaptiveRenderGoOn) {
   double taken = 0.0;
   for (size_t i = 0; i < after.size(); ++i) taken += after[i] - before[i];
   EXPECT_NEAR(taken / double(after.size()), 32.0, 2.0);
+}
+
+TEST_F(EdgesOfARender, HaveMoreSamplesInABorder) {
+  const uint32_t border[] = {8, 4, 40, 20};
+  std::copy_n(border, 4, settings_.region);
+  const auto film = sampled(4);
+  const auto [low, high] = range_of_counts(*film);
+  EXPECT_EQ(low, 4u);
+  EXPECT_GE(high, 8u);
+  EXPECT_LE(film::mean_samples(*film), 6.0);
+}
+
+// Two renders of different samples have different further ones, and a film of both has all of them.
+TEST_F(EdgesOfARender, AreMergedWithAllTheirSamples) {
+  const auto first = sampled(4);
+  settings_.first_sample = 4;
+  const auto second = sampled(4);
+  film::Film merged = *first;
+  render::merge_films(&merged, *second);
+  const std::vector<uint32_t> a = film::samples_of_pixels(*first), b = film::samples_of_pixels(*second),
+                              sum = film::samples_of_pixels(merged);
+  for (size_t i = 0; i < sum.size(); ++i) ASSERT_EQ(sum[i], a[i] + b[i]) << i;
+  EXPECT_FALSE(test::same_samples(*first, *second));
+  const uint32_t most = render::kMaxFactorAtEdges * kUsual;
+  EXPECT_LE(render::first_further_sample(0) + most, render::first_further_sample(kUsual));
 }
 
 TEST_F(EdgesOfARender, AreSampledAsOthersWithoutAReconstruction) {
