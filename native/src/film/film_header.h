@@ -13,6 +13,7 @@ struct FilmHeader {
   ComponentContent of_components;
   GradusSettings settings{};
   SampleRanges samples;
+  uint32_t net_samples = 0;
   uint64_t scene_key = 0;
   int32_t frame_number = 0;
   Mat3 view_rotation{1.0f};
@@ -32,6 +33,7 @@ inline FilmHeader header_of(const Film& film) {
           component_content(film),
           film.settings,
           film.samples,
+          film.net_samples,
           film.scene_key,
           film.frame_number,
           film.view_rotation,

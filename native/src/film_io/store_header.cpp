@@ -179,6 +179,7 @@ json describe_samples(const film::Film& film) {
           {"settings", schema::settings_to_json(film.settings)},
           {"planes", film.channels.passes()},
           {"samples", ranges_to_json(film.samples)},
+          {"net_samples", film.net_samples},
           {"counters", counters_to_json(film.counters)}};
 }
 
@@ -260,6 +261,7 @@ film::FilmHeader read_header(const Imf::Header& header, const json& description)
   film.of_components = component_content_from_json(description);
   film.settings = schema::settings_from_json(description.at("settings"), &film.warnings);
   film.samples = ranges_from_json(description.at("samples"));
+  film.net_samples = description.value("net_samples", 0u);  // older films have none
   film.replayed_frame = description.value("replayed_frame", 0);
   if (description.contains("replayed_scene_key"))
     film.replayed_key = key_from_json(description.at("replayed_scene_key"));
@@ -330,6 +332,7 @@ film::Film make_film(const Imf::Header& header, StoredContent content, const std
   film.scene_key = known.scene_key;
   film.counters = counters_from_json(description.at("counters"));
   film.samples = known.samples;
+  film.net_samples = known.net_samples;
   film.shared = known.shared;
   for (const film::ChannelInfo& info : channels) film.channels.add(info, pixels);
   if (const uint64_t passes = film.channels.passes(); schema::needed_passes(passes) != passes)

@@ -47,17 +47,26 @@ Stream find_stream(const path::PathContext& context, const WorkUnit& unit, const
   return stream_of_pixel(context, replayed, film.gradients, x0 + pixel % width, film.region.y0 + pixel / width);
 }
 
-path::Sampler make_sampler(const path::PathContext& context, const Stream& stream, path::StreamKind kind,
-                           uint32_t index, uint32_t number) {
-  return path::Sampler({stream.seed, kind, index, stream.frame, number}, context.settings.independent_sampler != 0);
+path::Sampler sampler_of_pixel(const path::PathContext& context, const Stream& stream, uint32_t net_samples,
+                               uint32_t number) {
+  const auto x = static_cast<uint32_t>(GRADUS_FAULT(random_stream_shared_by_pixels) ? 0 : stream.x),
+             y = static_cast<uint32_t>(GRADUS_FAULT(random_stream_shared_by_pixels) ? 0 : stream.y);
+  path::SampleKey key{stream.seed, stream.kind, 0, stream.frame, number, net_samples};
+  if (net_samples > 0) {
+    key.place = path::morton_code(x, y);
+  } else {
+    key.stream = y * context.settings.width + x;
+  }
+  return path::Sampler(key, context.settings.independent_sampler != 0);
 }
 
 // Returns the jitter of the pixel block that contains a pixel of the stream.
 Vec2 jitter_of_block(const path::PathContext& context, const Stream& stream, uint32_t number) {
   const uint32_t column = static_cast<uint32_t>(film::pixel_block_of(stream.x)),
                  row = static_cast<uint32_t>(film::pixel_block_of(stream.y));
-  const path::Sampler sampler =
-      make_sampler(context, stream, path::StreamKind::PixelBlock, (row << 16) ^ (column & 0xffffu), number);
+  const path::Sampler sampler(
+      {stream.seed, path::StreamKind::PixelBlock, (row << 16) ^ (column & 0xffffu), stream.frame, number},
+      context.settings.independent_sampler != 0);
   return context.filter.sample(sampler.get2(path::dimension::kFilm));
 }
 
@@ -103,9 +112,7 @@ PixelSample make_pixel_sample(const path::PathContext& context, const WorkUnit& 
   sample.pixel = film.index(x, y);
   sample.number = number;
   sample.half = static_cast<int>(number & 1u);
-  const uint32_t own = static_cast<uint32_t>(stream.y) * context.settings.width + static_cast<uint32_t>(stream.x),
-                 index = GRADUS_FAULT(random_stream_shared_by_pixels) ? 0u : own;
-  sample.sampler = make_sampler(context, stream, stream.kind, index, number);
+  sample.sampler = sampler_of_pixel(context, stream, film.net_samples, number);
   return sample;
 }
 

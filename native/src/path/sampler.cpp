@@ -1,5 +1,8 @@
 #include "path/sampler.h"
 
+#include <algorithm>
+#include <bit>
+
 #include "base/random_bits.h"
 
 namespace gradus::path {
@@ -38,15 +41,38 @@ struct Bits {
           reverse_bits(scramble_reversed(multiply_pascal(index), mix(seed ^ 0x02e5be93u)))};
 }
 
+// Maximum log₂ of the samples of a pixel and half-buffer in a net, which leaves 16 bits of an index for pixels.
+constexpr uint32_t kMaxLogSize = 16;
+
 }  // namespace
 
-Sampler::Sampler(const SampleKey& key, bool independent)
-    : index_(key.index >> 1), reversed_index_(reverse_bits(index_)), independent_(independent) {
+uint32_t morton_code(uint32_t x, uint32_t y) {
+  const auto spread = [](uint32_t v) {
+    v = (v | (v << 8)) & 0x00ff00ffu;
+    v = (v | (v << 4)) & 0x0f0f0f0fu;
+    v = (v | (v << 2)) & 0x33333333u;
+    return (v | (v << 1)) & 0x55555555u;
+  };
+  return spread(x & 0xffffu) | (spread(y & 0xffffu) << 1);
+}
+
+Sampler::Sampler(const SampleKey& key, bool independent) : index_(key.index >> 1), independent_(independent) {
   uint32_t h = combine(0x67726164u, key.seed);
   h = combine(h, static_cast<uint32_t>(key.kind));
   h = combine(h, key.stream);
   h = combine(h, static_cast<uint32_t>(key.stream_frame));
   stream_hash_ = combine(h, key.index & 1u);  // each half-buffer has its own shuffle and scramble
+  if (key.net_samples > 0) join_net(key.net_samples, key.place);
+  reversed_index_ = reverse_bits(index_);
+}
+
+// The samples of a pixel are consecutive points, and so are those of each aligned square of pixels. Points beyond a
+// pixel's part of the net, and pixels beyond the bits of an index, take other nets.
+void Sampler::join_net(uint32_t samples, uint32_t place) {
+  const uint32_t log_size = std::min(uint32_t(std::bit_width((samples + 1) / 2 - 1)), kMaxLogSize),
+                 log_pixels = std::min(32 - log_size, 28u), number = index_ >> log_size;
+  stream_hash_ = combine(stream_hash_, combine(number, (place >> log_pixels << 5) | log_size));
+  index_ = ((place & ((1u << log_pixels) - 1)) << log_size) | (index_ & ((1u << log_size) - 1));
 }
 
 Vec2 Sampler::get2(uint32_t block) const {

