@@ -190,6 +190,7 @@ def _end_job() -> None:
         end()
     for session in _sessions.values():
         session.pictures.clear()
+        session.exporter.end_job()
 
 
 @bpy.app.handlers.persistent

@@ -12,6 +12,7 @@ import pytest
 from gradus import animation, handlers, output
 from gradus.failure import Failure
 from support import images, recording, simulations
+from support.animation import key, step
 from support.exports import Exports
 
 WIDTH, HEIGHT = 32, 18
@@ -267,6 +268,87 @@ def test_c9_changes_of_all_kinds_are_noticed(
     animate(square, tmp_path)
     assert alone(lines()) == [2, 3]
     assert len(warnings(lines())) == 1
+
+
+def key_switch(owner: Any, switch: str) -> None:
+    """Hides what has a switch at first, in all frames but 6 and 7."""
+    step(owner, switch, {1: True, 6: False, 8: True})
+
+
+def add_guest(collection: bpy.types.Collection) -> bpy.types.Object:
+    """Adds an object in front of the square, with a mesh, a material and an image of its own."""
+    show_pixels(bpy.context.scene)
+    guest = bpy.data.objects.new("Guest", recording.grid(1, 0.5, name="Guest"))
+    guest.location = (1.0, 0.0, 0.1)
+    guest.data.materials.append(bpy.data.materials["White"].copy())
+    bpy.data.objects["Square"].data.materials[0] = bpy.data.materials["Black"]
+    collection.objects.link(guest)
+    return guest
+
+
+def show_an_object(scene: Scene) -> None:
+    key_switch(add_guest(scene.collection), "hide_render")
+
+
+def show_an_instanced_collection(scene: Scene) -> None:
+    collection = bpy.data.collections.new("Guests")
+    add_guest(collection)
+    empty = recording.add(None, "Copy")
+    empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    key_switch(empty, "hide_render")
+
+
+def show_copies(scene: Scene) -> None:
+    """Shows more copies of an object on the vertices of another one, which gets more of them."""
+    guest = add_guest(scene.collection)
+    row = recording.add(recording.grid(1, 0.1, name="Row"), "Row", (0.5, 0.0, 0.0))
+    guest.parent, row.instance_type = row, "VERTS"
+    row.modifiers.new("Copies", "ARRAY")
+    step(row, 'modifiers["Copies"].count', {1: 1, 6: 4})
+
+
+def change_topology(scene: Scene) -> None:
+    """Gives the mesh of an object more faces."""
+    guest = add_guest(scene.collection)
+    guest.modifiers.new("Thick", "SOLIDIFY").thickness = 0.1
+    step(guest, 'modifiers["Thick"].show_render', {1: False, 6: True})
+
+
+def switch_a_light_on(scene: Scene) -> None:
+    add_guest(scene.collection)
+    key_switch(bpy.data.objects["Lamp"], "hide_render")
+
+
+APPEARANCES = [show_an_object, show_an_instanced_collection, show_copies, change_topology, switch_a_light_on]
+
+
+def animate_passes(scene: Scene, folder: Path) -> dict[int, images.Passes]:
+    """Renders the animation. Returns all passes by frame."""
+    images.use_exr(scene, folder / "f_####.exr")
+    bpy.ops.render.render(animation=True, scene=scene.name)
+    return {
+        frame: images.read(folder / f"f_{frame:04d}.exr") for frame in range(scene.frame_start, scene.frame_end + 1)
+    }
+
+
+@pytest.mark.parametrize("appear", APPEARANCES)
+def test_c9_what_appears_ahead_of_the_frame_stays_joined_under_a_handler(
+    square: Scene, handle: Handle, lines: Any, tmp_path: Path, appear: Callable[[Scene], None]
+) -> None:
+    """Objects that only frames ahead show were taken for others after the frame of the handler had been exported."""
+    appear(square)
+    # Frames that differ in nothing are copies. Under the orthographic camera, everything stays in its pixel.
+    key(bpy.data.objects["Square"], "location", {1: (0.0, 0.0, -0.1), 8: (0.0, 0.0, -0.8)})
+    square.gradus.reconstruction = "REGULARIZED"  # samples one frame ahead for each frame that Blender asks for
+    square.view_layers[0].gradus.use_pass_gradients = True
+    without = animate_passes(square, tmp_path)
+    correspondence = without[6]["Gradient T Correspondence"]
+    assert (correspondence[..., 2] == 1.0).all(), "everything that frame 6 shows stays"
+    handle("render_pre", lambda _frame: None)
+    found = animate_passes(square, tmp_path)
+    assert alone(lines()) == warnings(lines()) == []
+    for frame, passes in found.items():
+        assert all(np.array_equal(passes[name], without[frame][name]) for name in passes), frame
 
 
 def test_c9_after_the_handler_is_removed_frames_are_sampled_ahead_again(

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from gradus.export import shadow_terminator
 from support import recording
+from support.animation import step
 
 CAMERA, GLOSSY, HOLDOUT = 1, 4, 64
 
@@ -56,6 +57,44 @@ def test_identity_survives_renames_and_order(scene: bpy.types.Scene) -> None:
     before = ids_by_place()
     bpy.data.objects["Object 0"].name = "Zzz"
     assert ids_by_place() == before
+
+
+def test_identity_does_not_depend_on_the_frames_exported_before(scene: bpy.types.Scene) -> None:
+    """Stored frames of several jobs are compared by it. An object that returns after it was hidden is the same one."""
+    from gradus.export import Exporter
+
+    recording.add_camera()
+    guest = recording.add(recording.grid(2), "Guest")
+    recording.add(recording.grid(1), "Object", (1, 0, 0))
+    _collection_instances(2)
+    step(guest, "hide_viewport", {1: False, 2: True, 3: False})
+    recorded = recording.Recording()
+
+    def ids_at(exporter: Exporter, frame: int) -> set[int]:
+        scene.frame_set(frame)
+        exporter.sync(bpy.context.evaluated_depsgraph_get())
+        return set(map(int, recorded.instances["ids"]))
+
+    exporter, other = Exporter(recorded, 1), Exporter(recorded, 1)
+    everything, rest = ids_at(exporter, 1), ids_at(exporter, 2)
+    assert len(everything) == 4 and rest < everything and len(rest) == 3
+    assert ids_at(other, 2) == rest, "another job begins with the second frame"
+    assert ids_at(exporter, 3) == ids_at(other, 3) == everything
+
+
+def test_identity_of_an_object_that_takes_the_name_of_another(scene: bpy.types.Scene) -> None:
+    from gradus.export import Exporter
+
+    recording.add_camera()
+    first = recording.add(recording.grid(1), "First")
+    recorded = recording.Recording()
+    exporter = Exporter(recorded, 1)
+    exporter.sync(bpy.context.evaluated_depsgraph_get())
+    before = set(recorded.instances["ids"])
+    first.name = "Other"
+    recording.add(recording.grid(1), "First")
+    exporter.sync(bpy.context.evaluated_depsgraph_get())
+    assert len(set(recorded.instances["ids"])) == 2 and before < set(recorded.instances["ids"])
 
 
 def test_visibility_of_object_and_instancer(scene: bpy.types.Scene) -> None:

@@ -47,6 +47,7 @@ class Entry:
     blur: Blur = NO_BLUR
     light_group: str = ""
     asset_name: str = ""  # of the topmost parent
+    full_names: tuple[str, str] = ("", "")  # of the object and of its instancer, with their libraries
     generated: tuple[float, ...] = (0.0, 0.0, 0.0)
     uv: tuple[float, ...] = (0.0, 0.0)
     materials: tuple[Any, ...] = ()
@@ -108,6 +109,7 @@ class _ObjectProperties:
     blur: Blur
     light_group: str
     asset_name: str
+    full_names: tuple[str, str]
     is_edited: bool = False  # whether the object's mesh is in Edit Mode
 
 
@@ -141,7 +143,10 @@ class _ObjectCache:
             color = tuple((obj if parent is None else parent).color)
             group, asset = getattr(owner, "lightgroup", ""), _topmost(owner).name
             links = self.linking.links_of(owner, parent)
-            found = _ObjectProperties(key, bits, owner.name, obj.pass_index, color, offsets, links, blur, group, asset)
+            names = (owner.original.name_full, parent.original.name_full if parent is not None else "")
+            found = _ObjectProperties(
+                key, bits, owner.name, obj.pass_index, color, offsets, links, blur, group, asset, names
+            )
             found.is_edited = owner.type == "MESH" and owner.data.is_editmode
             self._properties[evaluated] = found
             self._warnings.extend(unsupported.of_object(owner, self._view_layer))
@@ -240,6 +245,7 @@ def _entry(index: int, instance: Any, obj: Any, is_light: bool, cache: _ObjectCa
         properties.blur,
         properties.light_group,
         properties.asset_name,
+        properties.full_names,
     )
     if copies:
         entry.generated = tuple(0.5 * value - 0.5 for value in instance.orco)  # as in Cycles

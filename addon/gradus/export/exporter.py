@@ -21,7 +21,7 @@ from .collect import Collected, Entry, InstanceKey, collect
 from .dicing import dicing_camera, dicing_of
 from .digest import Digest
 from .instance_attributes import read_instance_attributes
-from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, KeyTable
+from .keys import KIND_IMAGE, KIND_MATERIAL, KIND_MESH, InstanceIds, KeyTable
 from .material import Materials, Resources
 from .may_move import MayMove
 from .mesh import MeshArrays
@@ -43,7 +43,7 @@ class Exporter:
         self._meshes = KeyTable()
         self._images = KeyTable()
         self._materials = KeyTable()
-        self._ids = KeyTable()
+        self._ids = InstanceIds()
         self._views: dict[str, tuple[native.Camera, Any]] = {}
 
     def sync(
@@ -87,7 +87,7 @@ class Exporter:
         finally:
             if view is not None or is_preview:
                 blender_pixels.release()  # final renders do it when their job ends
-        self._ids.sweep()
+        self._ids.end()
         for kind, table in tables:
             for key in table.sweep():
                 self._target.remove(kind, key)
@@ -100,6 +100,10 @@ class Exporter:
         """Sets the camera of another view of the last exported frame. The views share everything else."""
         struct, _keep = self._views[view]
         self._target.set_camera(struct)
+
+    def end_job(self) -> None:
+        """Drops what is kept for all frames of a job."""
+        self._ids.forget()
 
     def sync_camera(self, depsgraph: Any, view: camera.ViewOverride) -> None:
         """Sets only the camera of a viewport, when nothing else has changed."""
@@ -289,7 +293,7 @@ class _Sync:
 
     def _set_instances(self, collected: Collected, mesh_of: dict[Shape, int], moments: motion.Moments) -> None:
         mesh_keys = [mesh_of[self._shape(entry)] for entry in collected.surfaces]
-        arrays = instances.instance_arrays(collected, mesh_keys, self._ids.key)
+        arrays = instances.instance_arrays(collected, mesh_keys, self._ids.id)
         if self._wanted.vectors:
             around = (moments[time] for time in motion.NEIGHBORS)
             arrays.previous, arrays.following = (self._matrices_at(arrays.entries, moment) for moment in around)

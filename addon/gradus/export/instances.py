@@ -42,15 +42,18 @@ class InstanceArrays:
 
 
 def instance_arrays(
-    collected: Collected, mesh_keys: list[int], instance_id: Callable[[InstanceKey], int]
+    collected: Collected, mesh_keys: list[int], instance_id: Callable[[InstanceKey, tuple[str, str]], int]
 ) -> InstanceArrays:
-    """Returns arrays of the surfaces that have a mesh. mesh_keys: the key of each surface's mesh, or 0."""
+    """Returns arrays of the surfaces that have a mesh.
+
+    mesh_keys: the key of each surface's mesh, or 0. instance_id: returns the id of an instance by its key and names.
+    """
     entries = [entry for entry, key in zip(collected.surfaces, mesh_keys, strict=True) if key]
     arrays = InstanceArrays(
         entries=entries,
         matrices=_pick(collected.matrices, entries),
         mesh_keys=array("Q", filter(None, mesh_keys)),
-        ids=array("Q", [instance_id(entry.key) for entry in entries]),
+        ids=array("Q", [instance_id(entry.key, entry.full_names) for entry in entries]),
         materials=array("Q"),
         material_first=array("I"),
         material_count=array("I"),

@@ -1,4 +1,4 @@
-"""64-bit keys of native objects, with mark and sweep.
+"""64-bit keys of native objects, with mark and sweep, and ids of instances.
 
 A token is a hashable value that identifies the object, such as a content hash or a pointer with a kind. Keys are
 numbered in the order of first appearance, so that they do not depend on Blender's addresses.
@@ -6,6 +6,7 @@ numbered in the order of first appearance, so that they do not depend on Blender
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Hashable
 
 KIND_MESH, KIND_IMAGE, KIND_MATERIAL = 0, 1, 2
@@ -59,3 +60,62 @@ class KeyTable:
                 del self._contents[key]
                 unused.append(key)
         return unused
+
+
+_NOBODY = 2**64 - 1
+"""The id that the library gives to instances that belong to no object."""
+
+
+class InstanceIds:
+    """Maps keys of instances to ids, which are the same in all frames and in all jobs that share a frame store.
+
+    An id is a hash of names and numbers, so that it depends neither on the frames in which its instance is visible nor
+    on the order of exports. An object has the name that it had in the first export that showed it: handlers may rename
+    objects from frame to frame.
+    """
+
+    def __init__(self) -> None:
+        self._ids: dict[tuple[int, ...], int] = {}
+        self._last_ids: dict[tuple[int, ...], int] = {}  # of the sync before, so that few ids are computed again
+        self._names: dict[int, str] = {}  # by the address of the object
+        self._addresses: dict[str, int] = {}  # by name
+
+    def begin(self) -> None:
+        """Starts a sync, in which no id is used yet."""
+        self._last_ids, self._ids = self._ids, {}
+
+    def end(self) -> None:
+        """Ends a sync: drops all ids that were not used."""
+        self._last_ids = {}
+
+    def id(self, key: tuple[int, ...], names: tuple[str, str]) -> int:
+        """Returns the id of an instance.
+
+        key: the addresses of its object and of its instancer, or 0, and its numbers. names: those of both objects.
+        """
+        found = self._ids.get(key)
+        if found is None:
+            found = self._last_ids.get(key)
+            if found is None:
+                found = self._hash(key, names)
+            self._ids[key] = found
+        return found
+
+    def forget(self) -> None:
+        """Drops all ids and names at the end of a job, because objects may be renamed before the next one."""
+        for kept in (self._ids, self._last_ids, self._names, self._addresses):
+            kept.clear()
+
+    def _hash(self, key: tuple[int, ...], names: tuple[str, str]) -> int:
+        first_names = [self._name(address, name) for address, name in zip(key, names, strict=False)]
+        text = ascii((*first_names, *key[len(names) :]))
+        return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=8).digest(), "little") % _NOBODY
+
+    def _name(self, address: int, name: str) -> str:
+        """Returns the first name of an object. Another object that takes this name later gets one of its own."""
+        if address not in self._names:
+            while name in self._addresses:
+                name += "\0"
+            self._names[address] = name
+            self._addresses[name] = address
+        return self._names[address]
