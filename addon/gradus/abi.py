@@ -616,6 +616,7 @@ class Settings(Struct):
         ("independent_sampler", c_uint32),
         ("passes", c_uint64),
         ("first_sample", c_uint32),
+        ("net_samples", c_uint32),
         ("denoiser", c_uint32),
         ("use_decomposition", c_uint32),
         ("component_passes", c_uint32),

@@ -537,6 +537,7 @@ TEST_SWITCHES = (
     "background_motion",
     "independent_sampler",
     "first_sample",
+    "net_samples",
 )
 """Native settings that exist on the command line only."""
 

@@ -97,6 +97,26 @@ def test_identity_of_an_object_that_takes_the_name_of_another(scene: bpy.types.S
     assert len(set(recorded.instances["ids"])) == 2 and before < set(recorded.instances["ids"])
 
 
+def test_identity_of_an_object_that_is_made_again(scene: bpy.types.Scene) -> None:
+    """As by a script that makes objects for each frame, and by undo in a viewport."""
+    from gradus.export import Exporter
+
+    recording.add_camera()
+    recorded = recording.Recording()
+    exporter = Exporter(recorded, 1)
+    found = []
+    for _ in range(3):
+        before = bpy.data.objects.get("Made Again")
+        if before is not None:
+            before.name = "Gone"  # and still there, so that the next one has another address
+        recording.add(recording.grid(1), "Made Again")
+        if before is not None:
+            bpy.data.objects.remove(before)
+        exporter.sync(bpy.context.evaluated_depsgraph_get())
+        found.append(set(recorded.instances["ids"]))
+    assert found[0] == found[1] == found[2]
+
+
 def test_visibility_of_object_and_instancer(scene: bpy.types.Scene) -> None:
     recording.add_camera()
     obj = _collection_instances(1)

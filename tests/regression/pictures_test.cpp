@@ -71,7 +71,7 @@ std::string bits(const std::vector<float>& image) {
 }
 
 // Renders the image whose bits are stored.
-std::vector<float> render_stored(const Picture& picture) { return render(picture, 2, 0); }
+std::vector<float> render_stored(const Picture& picture) { return render(picture, 2, 1); }
 
 // Mean and variance of blocks and pixels over several seeds.
 struct Measured {
@@ -217,7 +217,10 @@ TEST_F(M1_Pictures, HaveTheStoredBits) {
     if (bits(rgba) == expected) save_reference(expected, rgba);
     ++compared;
   }
-  if (compared == 0) GTEST_SKIP() << "no bits are stored of " << machine();
+  if (compared < all.size()) {
+    GTEST_SKIP() << "no bits of " << machine() << " are stored for " << all.size() - compared << " of " << all.size()
+                 << " pictures";
+  }
 }
 
 TEST(M1_Artefacts, ReportWhatDiffersAndWhere) {

@@ -293,6 +293,7 @@ class _Sync:
 
     def _set_instances(self, collected: Collected, mesh_of: dict[Shape, int], moments: motion.Moments) -> None:
         mesh_keys = [mesh_of[self._shape(entry)] for entry in collected.surfaces]
+        self._ids.show(entry.key for entry in collected.surfaces)
         arrays = instances.instance_arrays(collected, mesh_keys, self._ids.id)
         if self._wanted.vectors:
             around = (moments[time] for time in motion.NEIGHBORS)

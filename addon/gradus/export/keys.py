@@ -7,7 +7,7 @@ numbered in the order of first appearance, so that they do not depend on Blender
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterable
 
 KIND_MESH, KIND_IMAGE, KIND_MATERIAL = 0, 1, 2
 
@@ -71,7 +71,7 @@ class InstanceIds:
 
     An id is a hash of names and numbers, so that it depends neither on the frames in which its instance is visible nor
     on the order of exports. An object has the name that it had in the first export that showed it: handlers may rename
-    objects from frame to frame.
+    objects from frame to frame. An object that is made again under a name takes the place of the one that had it.
     """
 
     def __init__(self) -> None:
@@ -79,10 +79,15 @@ class InstanceIds:
         self._last_ids: dict[tuple[int, ...], int] = {}  # of the sync before, so that few ids are computed again
         self._names: dict[int, str] = {}  # by the address of the object
         self._addresses: dict[str, int] = {}  # by name
+        self._shown: set[int] = set()  # addresses of the objects and instancers of this sync
 
     def begin(self) -> None:
         """Starts a sync, in which no id is used yet."""
         self._last_ids, self._ids = self._ids, {}
+
+    def show(self, keys: Iterable[tuple[int, ...]]) -> None:
+        """Says which instances this sync shows. Names of objects that it does not show may pass to others."""
+        self._shown = {address for key in keys for address in key[:2]}
 
     def end(self) -> None:
         """Ends a sync: drops all ids that were not used."""
@@ -112,10 +117,11 @@ class InstanceIds:
         return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=8).digest(), "little") % _NOBODY
 
     def _name(self, address: int, name: str) -> str:
-        """Returns the first name of an object. Another object that takes this name later gets one of its own."""
+        """Returns the first name of an object, or one of its own while another object has that name."""
         if address not in self._names:
-            while name in self._addresses:
+            while self._addresses.get(name) in self._shown:
                 name += "\0"
+            self._names.pop(self._addresses.get(name, -1), None)
             self._names[address] = name
             self._addresses[name] = address
         return self._names[address]

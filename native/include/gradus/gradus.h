@@ -673,6 +673,9 @@ typedef struct GradusSettings {
   uint64_t passes;                  /* Bit i asks for pass i of GradusPass. Combined is always made. */
   uint32_t first_sample;            /* Number of the first sample, for films that are merged: a film has the samples
                                        from it on. */
+  uint32_t net_samples;             /* Samples per pixel that films have in the end, for parts of a render that are
+                                       resumed or merged. Random numbers are spread evenly over so many samples and
+                                       over neighbouring pixels. 0 = the samples of the first part. */
   uint32_t denoiser;                /* GradusDenoiser: Removes remaining noise with Open Image Denoise, guided by the
                                        albedo and normals of surfaces. It adds about 7.5 CPU-µs per pixel, 15 CPU
                                        seconds at 1920×1080. It is biased: fine detail can vanish or be invented. In

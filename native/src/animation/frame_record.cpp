@@ -57,7 +57,10 @@ std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const scene::
   before->snapshot = std::move(snapshot);
   before->settings = settings;
   before->stream_frame = fresh != nullptr ? fresh->frame_number : settings.frame;
-  if (fresh != nullptr) before->sampled = fresh->region;
+  if (fresh != nullptr) {
+    before->sampled = fresh->region;
+    before->net_samples = fresh->settings.net_samples;
+  }
   return before;
 }
 

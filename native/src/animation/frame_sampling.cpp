@@ -32,6 +32,7 @@ render::LoopInput FrameSampling::fresh_input() const {
   input.settings.time_limit *= fresh_share_of_time(input_.settings);
   input.settings.noise_threshold *= fresh_share_of_threshold(input_.settings);
   input.whole_samples = input_.settings.samples;
+  input.is_replayed = takes_replays(input_.settings);
   return input;
 }
 
@@ -275,7 +276,8 @@ bool FrameSampling::replays_before(const film::FilmHeader& replayed) const {
   if (!before) return true;
   if (!follows_before()) return replayed.replayed_frame == input_.settings.frame;
   const bool shows_it = replayed.replayed_key == 0 || replayed.replayed_key == before->snapshot->content_key;
-  return replayed.replayed_frame == before->stream_frame && replayed.replayed_seed == before->settings.seed && shows_it;
+  return replayed.replayed_frame == before->stream_frame && replayed.replayed_seed == before->settings.seed &&
+         replayed.replayed_net_samples == before->net_samples && shows_it;
 }
 
 std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHeader& fresh,

@@ -97,8 +97,12 @@ film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapsh
     correspondence = correspondence_of_dominant(from, to, settings, std::move(correspondence), cancel);
     if (!cancel()) motion::leave_out_parting_edges(from, to, &correspondence);
   }
-  film::ReplayMap replay_map{before.stream_frame, motion::inverse_correspondence(correspondence), scene.content_key,
-                             before.settings.seed, shares};
+  film::ReplayMap replay_map{before.stream_frame,
+                             motion::inverse_correspondence(correspondence),
+                             scene.content_key,
+                             before.settings.seed,
+                             shares,
+                             before.net_samples};
   replay_map.of_component =
       correspondences_of_components(from, to, settings, components, correspondence, replay_map.correspondence, cancel);
   render::limit_component_replays(&replay_map);

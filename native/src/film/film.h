@@ -132,9 +132,6 @@ class Film {
 
   // Sample numbers that were taken. Some pixels have fewer if tiles stopped early or the render was cancelled.
   SampleRanges samples;
-  // Samples of each pixel in the nets of points that all pixels share (path/sampler.h); 0: pixels have points of their
-  // own.
-  uint32_t net_samples = 0;
   AdaptiveState shared;
   ReplayMap replayed;  // source of the random numbers of replayed samples; empty if all samples are fresh
   // Keys of the sampled scene and settings that reading needs.

@@ -179,7 +179,6 @@ json describe_samples(const film::Film& film) {
           {"settings", schema::settings_to_json(film.settings)},
           {"planes", film.channels.passes()},
           {"samples", ranges_to_json(film.samples)},
-          {"net_samples", film.net_samples},
           {"counters", counters_to_json(film.counters)}};
 }
 
@@ -191,6 +190,7 @@ json describe(const film::Film& film) {
   j["replayed_frame"] = film.replayed.stream_frame;
   j["replayed_scene_key"] = hex(film.replayed.scene_key);
   j["replayed_seed"] = film.replayed.seed;
+  j["replayed_net_samples"] = film.replayed.net_samples;
   j["off_centre"] = !film.replayed.correspondence.off_centre.empty();
   for (int c = 0; c < int(film.components.size()); ++c) {
     if (film.replayed.has_component_map(c)) j["component_maps"].push_back(c);
@@ -261,12 +261,12 @@ film::FilmHeader read_header(const Imf::Header& header, const json& description)
   film.of_components = component_content_from_json(description);
   film.settings = schema::settings_from_json(description.at("settings"), &film.warnings);
   film.samples = ranges_from_json(description.at("samples"));
-  film.net_samples = description.value("net_samples", 0u);  // older films have none
   film.replayed_frame = description.value("replayed_frame", 0);
   if (description.contains("replayed_scene_key"))
     film.replayed_key = key_from_json(description.at("replayed_scene_key"));
   film.replayed_seed =
       description.value("replayed_seed", film.settings.seed);  // older films replay with the seed of their own frame
+  film.replayed_net_samples = description.value("replayed_net_samples", 0u);
   if (description.contains("shared")) film.shared = adaptive_state_from_json(description.at("shared"), film.region);
   film.scene_key = key_from_json(description.at("scene_key"));
   film.frame_number = description.at("frame");
@@ -332,7 +332,6 @@ film::Film make_film(const Imf::Header& header, StoredContent content, const std
   film.scene_key = known.scene_key;
   film.counters = counters_from_json(description.at("counters"));
   film.samples = known.samples;
-  film.net_samples = known.net_samples;
   film.shared = known.shared;
   for (const film::ChannelInfo& info : channels) film.channels.add(info, pixels);
   if (const uint64_t passes = film.channels.passes(); schema::needed_passes(passes) != passes)
@@ -345,6 +344,7 @@ film::Film make_film(const Imf::Header& header, StoredContent content, const std
     const film::PixelCorrespondence correspondence{
         std::vector<int32_t>(pixels), std::vector<Vec2>(description.value("off_centre", false) ? pixels : 0)};
     film.replayed = {known.replayed_frame, correspondence, known.replayed_key, known.replayed_seed};
+    film.replayed.net_samples = known.replayed_net_samples;
     // Older films have the key "own_sources".
     const char* const key = description.contains("own_sources") ? "own_sources" : "component_maps";
     for (const int own : description.value(key, std::vector<int>())) {

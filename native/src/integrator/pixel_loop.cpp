@@ -53,7 +53,7 @@ path::Sampler sampler_of_pixel(const path::PathContext& context, const Stream& s
              y = static_cast<uint32_t>(GRADUS_FAULT(random_stream_shared_by_pixels) ? 0 : stream.y);
   path::SampleKey key{stream.seed, stream.kind, 0, stream.frame, number, net_samples};
   if (net_samples > 0) {
-    key.place = path::morton_code(x, y);
+    key.morton = path::morton_code(x, y);
   } else {
     key.stream = y * context.settings.width + x;
   }
@@ -112,7 +112,9 @@ PixelSample make_pixel_sample(const path::PathContext& context, const WorkUnit& 
   sample.pixel = film.index(x, y);
   sample.number = number;
   sample.half = static_cast<int>(number & 1u);
-  sample.sampler = sampler_of_pixel(context, stream, film.net_samples, number);
+  const bool is_replay = unit.replay_map != nullptr && stream.kind == path::StreamKind::Pixel;
+  sample.sampler =
+      sampler_of_pixel(context, stream, is_replay ? unit.replay_map->net_samples : film.settings.net_samples, number);
   return sample;
 }
 

@@ -41,8 +41,9 @@ struct Bits {
           reverse_bits(scramble_reversed(multiply_pascal(index), mix(seed ^ 0x02e5be93u)))};
 }
 
-// Maximum log₂ of the samples of a pixel and half-buffer in a net, which leaves 16 bits of an index for pixels.
-constexpr uint32_t kMaxLogSize = 16;
+// Maximum log₂ of the samples of a pixel and half-buffer, and of the pixels, in a net. The index of a point has 32
+// bits.
+constexpr uint32_t kMaxLogSize = 16, kMaxLogPixels = 28;
 
 }  // namespace
 
@@ -62,17 +63,20 @@ Sampler::Sampler(const SampleKey& key, bool independent) : index_(key.index >> 1
   h = combine(h, key.stream);
   h = combine(h, static_cast<uint32_t>(key.stream_frame));
   stream_hash_ = combine(h, key.index & 1u);  // each half-buffer has its own shuffle and scramble
-  if (key.net_samples > 0) join_net(key.net_samples, key.place);
+  if (key.net_samples > 0) join_net(key.net_samples, key.morton);
   reversed_index_ = reverse_bits(index_);
 }
 
-// The samples of a pixel are consecutive points, and so are those of each aligned square of pixels. Points beyond a
-// pixel's part of the net, and pixels beyond the bits of an index, take other nets.
-void Sampler::join_net(uint32_t samples, uint32_t place) {
-  const uint32_t log_size = std::min(uint32_t(std::bit_width((samples + 1) / 2 - 1)), kMaxLogSize),
-                 log_pixels = std::min(32 - log_size, 28u), number = index_ >> log_size;
-  stream_hash_ = combine(stream_hash_, combine(number, (place >> log_pixels << 5) | log_size));
-  index_ = ((place & ((1u << log_pixels) - 1)) << log_size) | (index_ & ((1u << log_size) - 1));
+// The samples of a pixel and half-buffer are 2^k consecutive points of a net, and so are those of each aligned square
+// of pixels. Samples beyond the first net take others, each with as many samples of a pixel as there are before it.
+void Sampler::join_net(uint32_t samples, uint32_t morton) {
+  const auto first_log_size = uint32_t(std::bit_width((samples + 1) / 2 - 1));
+  const bool is_in_first = index_ >> first_log_size == 0;
+  const uint32_t log_size = std::min(is_in_first ? first_log_size : uint32_t(std::bit_width(index_)) - 1, kMaxLogSize);
+  const uint32_t log_pixels = std::min(32 - log_size, kMaxLogPixels);
+  const uint32_t net = index_ >> log_size, square = morton >> log_pixels;
+  stream_hash_ = combine(combine(stream_hash_, net), (square << 5) | log_size);
+  index_ = ((morton & ((1u << log_pixels) - 1)) << log_size) | (index_ & ((1u << log_size) - 1));
 }
 
 Vec2 Sampler::get2(uint32_t block) const {

@@ -40,10 +40,9 @@ struct SampleKey {
   int32_t stream_frame = 0;
   // Sample number. Even numbers belong to half-buffer A and odd ones to B. The two are scrambled independently.
   uint32_t index = 0;
-  // If above 0, all pixels share the stream, in nets of so many samples of each pixel, half of them in each
-  // half-buffer; a power of two, or rounded up to one.
+  // If above 0, all pixels share the stream, and the first so many samples of all of them are parts of one net.
   uint32_t net_samples = 0;
-  uint32_t place = 0;  // Morton code of the pixel
+  uint32_t morton = 0;  // Morton code of the pixel in such a stream
 };
 
 // Returns the number of a pixel in an order in which each aligned square of 2^k × 2^k pixels is consecutive (Morton
@@ -106,7 +105,7 @@ class Sampler {
 
  private:
   // Takes the points of a pixel from the nets of all pixels.
-  void join_net(uint32_t samples, uint32_t place);
+  void join_net(uint32_t samples, uint32_t morton);
   // Returns the blocks of a vertex that begin with `first`.
   VertexSample vertex_at(uint32_t first) const;
   // Computes consecutive blocks in SIMD lanes.

@@ -59,8 +59,9 @@ ComponentReplays replays_of_components(const film::ReplayMap& replay_map) {
   for (size_t c = 0; c < places.size(); ++c) {
     if (!replay_map.has_component_map(int(c))) continue;
     const film::PixelCorrespondence& own = replay_map.of_component[c];
-    const film::ReplayMap along{replay_map.stream_frame, own, replay_map.scene_key, replay_map.seed,
-                                replay_map.shares_jitter};
+    const film::ReplayMap along{replay_map.stream_frame,  own,
+                                replay_map.scene_key,     replay_map.seed,
+                                replay_map.shares_jitter, replay_map.net_samples};
     places[c] = replays.own.size();
     replays.own.push_back({along, std::vector<uint8_t>(pixels, 0), std::vector<uint32_t>(pixels, 0)});
     if (replays.shared.empty()) replays.shared.assign(pixels, lpe::kEveryComponent);

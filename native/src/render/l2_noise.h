@@ -4,10 +4,10 @@
 // v₀ to I there and v_k to the differences towards its four neighbours, so its contribution to the image has the
 // Fourier transform Σ v_j ψ_j,
 //   ψ₀ = α²/(α² + λ),  ψ_k = (e^{iu_k} − 1)/(α² + λ),  λ = 4 − 2 cos u − 2 cos v,  u_k: u, v, −u, −v
-// and by Parseval's theorem the sum of squares Σ v_j v_l ⟨ψ_j ψ̄_l⟩. Samples of different pixels are independent: the
-// mean of this sum over the deviations of samples is the mean squared error, with all correlation between a pixel and
-// its differences. An unpaired sample keeps all its noise: v = C(1, −1, −1, −1, −1), a path whose four shifts fail,
-// gives C².
+// and by Parseval's theorem the sum of squares Σ v_j v_l ⟨ψ_j ψ̄_l⟩. Samples of different pixels are taken as
+// independent: the mean of this sum over the deviations of samples is the mean squared error, with all correlation
+// between a pixel and its differences. An unpaired sample keeps all its noise: v = C(1, −1, −1, −1, −1), a path whose
+// four shifts fail, gives C².
 #pragma once
 
 #include <array>

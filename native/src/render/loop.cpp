@@ -165,8 +165,6 @@ void RenderLoop::prepare() {
   } else {
     film = std::make_shared<film::Film>(settings.width, settings.height, plan_.sampled, plan_.channels,
                                         components_.count(), !gradients_.none());
-    // Replayed samples take the points of other pixels.
-    if (!input_.meets_replays()) film->net_samples = settings.samples;
     name_planes(components_, film.get());
     const bool motion = plan_.component_motion && !input_.replay;
     film::allocate_component_content(
@@ -178,6 +176,7 @@ void RenderLoop::prepare() {
     film->shared.stopped.assign(film->shared.stopped.size(), 0);
   film->settings = settings;
   film->settings.struct_size = sizeof(GradusSettings);
+  film->settings.net_samples = net_samples();
   // The film stores the choices made for AUTO, so that its later readers do not choose again.
   film->settings.integrator = integrator;
   film->settings.reconstruction = gradients_.none() ? without_gradients(plan_) : plan_.reconstruction;
@@ -197,6 +196,14 @@ void RenderLoop::prepare() {
   if (input_.resumed) picture_.show_tile(*film, plan_.delivered);
   const std::lock_guard lock(mutex_);
   film_ = std::move(film);
+}
+
+// A film keeps the nets of its first samples; those of earlier versions have none. Samples that are replayed have none
+// either, so that the frames of a sequence need not have as many samples to replay each other.
+uint32_t RenderLoop::net_samples() const {
+  if (input_.resumed) return input_.resumed->settings.net_samples;
+  if (input_.meets_replays()) return 0;
+  return input_.settings.net_samples > 0 ? input_.settings.net_samples : input_.settings.samples;
 }
 
 bool RenderLoop::next_batch(uint32_t begin, uint32_t* end) const {
@@ -342,8 +349,10 @@ void RenderLoop::show(uint32_t begin) {
 void RenderLoop::tile_done(const Region& tile, uint64_t pixel_samples) {
   picture_.show_tile(*film_, tile);
   const uint64_t done = work_done_ += pixel_samples;
-  const double further = may_refine_edges() ? kUsualShareAtEdges : 0.0,
-               whole = (1.0 + further) * double(plan_.sampled.area()) * input_.settings.samples;
+  const uint32_t samples = input_.settings.samples,
+                 refined = input_.settings.noise_threshold > 0.0f ? std::min(samples, kMaxBatch) : samples;
+  const double further = may_refine_edges() && samples >= kEdgeCheck ? kUsualShareAtEdges * refined : 0.0,
+               whole = double(plan_.sampled.area()) * (samples + further);
   double fraction = double(done) / whole;
   const double sampled = sampling_.seconds();
   if (input_.settings.time_limit > 0.0f) fraction = std::max(fraction, sampled / input_.settings.time_limit);

@@ -64,6 +64,8 @@ class RenderLoop final : public RenderTask {
   // Finds the pixels at edges of emitters, whose paths take further camera rays.
   void find_edges();
   void run_batch(uint32_t begin, uint32_t end);
+  // Returns how many samples of a pixel one net of points has (path/sampler.h); 0: pixels have points of their own.
+  uint32_t net_samples() const;
   // Returns whether edges take further samples (render/edge_sampling.h) behind the batch that ends at `end`.
   bool refines_edges(uint32_t end) const;
   // Returns whether the render is of a kind whose edges may take further samples.

@@ -34,8 +34,10 @@ struct LoopInput {
   uint32_t whole_samples = 0;
   std::shared_ptr<const Replay> replay;  // nullptr: the samples are the frame's own
 
+  bool is_replayed = false;              // whether replays of the samples are compared with them
+
   // Returns whether the samples are replayed, or compared with replayed ones.
-  bool meets_replays() const { return replay || whole_samples > settings.samples; }
+  bool meets_replays() const { return replay || is_replayed; }
   // Returns the settings for which the render is planned.
   GradusSettings planned_settings() const {
     GradusSettings planned = settings;

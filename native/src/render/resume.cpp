@@ -111,7 +111,10 @@ void merge_films(film::Film* film, const film::Film& other) {
   film::add_sums(film, other);
   film->shared = {};  // the adaptive states of two films with different samples cannot be combined
   for (const film::SampleRange& range : other.samples.list()) film->samples.add(range);
-  if (other_is_first) film->settings.first_sample = other.settings.first_sample;
+  if (other_is_first) {
+    film->settings.first_sample = other.settings.first_sample;
+    film->settings.net_samples = other.settings.net_samples;
+  }
   film->settings.samples = uint32_t(std::min<uint64_t>(film->samples.total(), UINT32_MAX));
 }
 

@@ -285,6 +285,7 @@ constexpr FieldLayout kSettingsFields[] = {
     FIELD(GradusSettings, independent_sampler),
     FIELD(GradusSettings, passes),
     FIELD(GradusSettings, first_sample),
+    FIELD(GradusSettings, net_samples),
     FIELD(GradusSettings, denoiser),
     FIELD(GradusSettings, use_decomposition),
     FIELD(GradusSettings, component_passes),

@@ -143,6 +143,10 @@ constexpr Option kOptions[] = {
            "noisier."),
     OPTION(first_sample, GRADUS_OPTION_INT, 0, 0, 16777216, {}, false,
            "Number of the first sample, for films that are merged: a film has the samples from it on."),
+    OPTION(net_samples, GRADUS_OPTION_INT, 0, 0, 16777216, {}, false,
+           "Samples per pixel that films have in the end, for parts of a render that are resumed or merged. Random "
+           "numbers are spread evenly over so many samples and over neighbouring pixels. 0 = the samples of the first"
+           " part."),
     OPTION(denoiser, GRADUS_OPTION_ENUM, 1, 0, 2, kDenoiserChoices, false,
            "Removes remaining noise with Open Image Denoise, guided by the albedo and normals of surfaces. It adds "
            "about 7.5 CPU-µs per pixel, 15 CPU seconds at 1920×1080. It is biased: fine detail can vanish or be "

@@ -200,7 +200,11 @@ TEST(C7_RegularizedSequence, WithoutAStoreFramesWithTheSameNeighboursAreTheSame)
 TEST(C7_RegularizedSequence, MoreSamplesAreAddedToStoredFrames) {
   Pan pan(1.3f);
   const Folder folder, fresh;
-  const auto few = [](int32_t t) { return regularized(t, 10); };
+  const auto few = [](int32_t t) {
+    GradusSettings settings = regularized(t, 4);
+    settings.net_samples = 12;
+    return settings;
+  };
   const auto many = [](int32_t t) { return regularized(t, 12); };
   rendered(&pan, make_sequence(1, 3, folder.path()).get(), 1, 3, few);
   const std::map<int32_t, Picture> whole = rendered(&pan, make_sequence(1, 3, fresh.path()).get(), 1, 3, many);

@@ -215,11 +215,13 @@ TEST_F(F6_Store, ReplaysKeepTheirReplayMap) {
   film::Film film = *rendered(small_settings(20, 10, 2));
   film.replayed.stream_frame = -3;
   film.replayed.seed = 11;
+  film.replayed.net_samples = 12;
   for (int32_t i = 0; i < 200; ++i)
     film.replayed.correspondence.pixel.push_back(i % 7 == 0 ? film::kNoCorrespondence : 199 - i);
   film_io::save_film(film, path());
   EXPECT_EQ(film_io::load_film(path())->replayed.stream_frame, -3);
   EXPECT_EQ(film_io::load_film(path())->replayed.seed, 11u);
+  EXPECT_EQ(film_io::load_film(path())->replayed.net_samples, 12u);
   EXPECT_EQ(film_io::load_film(path())->replayed.correspondence, film.replayed.correspondence);
   film.replayed.correspondence.pixel[5] = 200;
   film_io::save_film(film, path());

@@ -86,7 +86,7 @@ TEST(L4_Sampler, HalvesAreNets) {
 path::Sampler sampler_of_pixel(uint32_t x, uint32_t y, uint32_t index, uint32_t net_samples) {
   path::SampleKey key = key_of(3, 0, index);
   key.net_samples = net_samples;
-  key.place = path::morton_code(x, y);
+  key.morton = path::morton_code(x, y);
   return path::Sampler(key);
 }
 
@@ -103,21 +103,57 @@ void expect_net(const std::vector<Vec2>& points) {
   }
 }
 
-// The samples of a pixel, and those of each aligned square of pixels, are nets. Few samples are rounded up.
+// Returns points of all pixels of an aligned square: those of `count` samples of a half-buffer from number `first` on.
+std::vector<Vec2> points_of_square(uint32_t side, uint32_t half, uint32_t first, uint32_t count, uint32_t net_samples) {
+  std::vector<Vec2> points;
+  for (uint32_t i = 0; i < count * side * side; ++i) {
+    const uint32_t pixel = i / count, x = 5 * side + pixel % side, y = 3 * side + pixel / side;
+    points.push_back(sampler_of_pixel(x, y, 2 * (first + i % count) + half, net_samples).get2(11));
+  }
+  return points;
+}
+
+// The samples of a pixel, and those of each aligned square of pixels, are nets, and so are later samples, as many as
+// all before. Few samples are rounded up.
 TEST(L4_Sampler, PixelsShareNets) {
-  for (const uint32_t samples : {1u, 2u, 4u, 7u, 16u}) {
-    const uint32_t of_half = std::bit_ceil((samples + 1) / 2);
+  for (const uint32_t net_samples : {1u, 2u, 4u, 7u, 16u}) {
+    const uint32_t count = std::bit_ceil((net_samples + 1) / 2);
     for (const uint32_t side : {1u, 2u, 8u}) {
-      for (const uint32_t first : {0u, 2 * of_half}) {
-        std::vector<Vec2> points;
-        for (uint32_t i = 0; i < of_half * side * side; ++i) {
-          const uint32_t pixel = i / of_half, x = 5 * side + pixel % side, y = 3 * side + pixel / side;
-          points.push_back(sampler_of_pixel(x, y, first + 2 * (i % of_half) + 1, samples).get2(11));
-        }
-        expect_net(points);
+      for (const uint32_t half : {0u, 1u}) {
+        expect_net(points_of_square(side, half, 0, count, net_samples));
+        expect_net(points_of_square(side, half, count, count, net_samples));
+        expect_net(points_of_square(side, half, 2 * count, 2 * count, net_samples));
       }
     }
   }
+}
+
+TEST(L4_Sampler, TheFirstSamplesOfAPixelAreNets) {
+  for (const uint32_t count : {1u, 2u, 4u, 8u}) expect_net(points_of_square(1, 0, 0, count, 32));
+}
+
+// Half-buffers are independent over squares of pixels, too: (A − B)²/4 estimates the variance of their mean, which is
+// far below that of independent pixels.
+TEST(A8_Variance, HalvesOfNetsOverPixels) {
+  constexpr int kSquares = 4000;
+  double estimated = 0.0, mean = 0.0, squares = 0.0;
+  for (int i = 0; i < kSquares; ++i) {
+    double half[2] = {0.0, 0.0};
+    for (uint32_t k = 0; k < 64 * 4; ++k) {
+      path::SampleKey key = key_of(uint32_t(i), 0, k % 4);
+      key.net_samples = 4;
+      key.morton = path::morton_code(k / 4 % 8, k / 32);
+      const Vec2 u = path::Sampler(key).get2(9);
+      half[k % 2] += std::exp(u.x) * u.y * u.y / 128.0;
+    }
+    const double value = 0.5 * (half[0] + half[1]);
+    estimated += 0.25 * (half[0] - half[1]) * (half[0] - half[1]) / kSquares;
+    mean += value / kSquares;
+    squares += value * value / kSquares;
+  }
+  const double variance = squares - mean * mean;
+  EXPECT_NEAR(estimated / variance, 1.0, 0.1);
+  EXPECT_LT(variance, 1e-5);  // that of one sample is 0.27, of 256 independent ones 1e-3
 }
 
 // Nets of other samples of a pixel, of other sizes, of other half-buffers and of far pixels are independent.
@@ -163,6 +199,7 @@ std::vector<double> residuals(uint32_t seed, uint32_t stream_step, uint32_t bloc
   return means;
 }
 
+// Of streams of single pixels; those that pixels share are correlated between neighbours.
 TEST(A10_Seeds, SamplerResidualsAreUncorrelated) {
   const std::vector<double> base = residuals(1, 0, 4);
   EXPECT_LT(std::fabs(correlation(base, residuals(2, 0, 4))), 0.05) << "seeds";
