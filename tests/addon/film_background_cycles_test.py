@@ -148,7 +148,7 @@ def test_light_passes(name: str, stage: bpy.types.Scene, tmp_path: Path) -> None
             continue  # a quotient by a colour to which all sides of the glass add
         # From 5.2 on the colour of rough glass differs from Cycles by 7 %, of clear glass by 2 %; why is not known.
         is_apart = bpy.app.version >= (5, 2, 0) and "glass" in name and "TransCol" in names
-        compare(pass_of(expected, names), pass_of(found, names), names[0], 0.03 if is_apart else 0.006)
+        compare(pass_of(expected, names), pass_of(found, names), names[0], 0.03 if is_apart else 0.008)
 
 
 @pytest.mark.parametrize("of_environment", [False, True], ids=["without Environment", "with Environment"])

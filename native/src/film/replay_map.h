@@ -30,7 +30,7 @@ struct ReplayMap {
   uint64_t scene_key = 0;     // scene key of the replayed frame; 0 if unknown
   uint32_t seed = 0;          // seed of the replayed frame
   bool shares_jitter = true;  // pixel blocks of the replayed frame share jitter; not stored, derived from its scene
-  uint32_t net_samples = 0;   // of the replayed film
+  uint32_t net_samples = 0;   // of the replayed film; 0 if the map is for correspondences alone
   // Maps of components whose film displacement differs, such as reflections. A component without a map, or with an
   // empty one, uses `correspondence`.
   std::vector<PixelCorrespondence> of_component{};

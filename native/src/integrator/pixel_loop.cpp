@@ -49,8 +49,8 @@ Stream find_stream(const path::PathContext& context, const WorkUnit& unit, const
 
 path::Sampler sampler_of_pixel(const path::PathContext& context, const Stream& stream, uint32_t net_samples,
                                uint32_t number) {
-  const auto x = static_cast<uint32_t>(GRADUS_FAULT(random_stream_shared_by_pixels) ? 0 : stream.x),
-             y = static_cast<uint32_t>(GRADUS_FAULT(random_stream_shared_by_pixels) ? 0 : stream.y);
+  const Stream place = GRADUS_FAULT(random_stream_shared_by_pixels) ? Stream{} : stream;
+  const auto x = static_cast<uint32_t>(place.x), y = static_cast<uint32_t>(place.y);
   path::SampleKey key{stream.seed, stream.kind, 0, stream.frame, number, net_samples};
   if (net_samples > 0) {
     key.morton = path::morton_code(x, y);
