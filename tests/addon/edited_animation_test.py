@@ -173,8 +173,15 @@ def test_c10_missing_pictures_are_those_of_the_whole(any_shot: Scene, lines: Lin
     [("seed", 3, "seed is 0, not 3"), ("max_bounces", 1, "max_bounces is"), ("samples", 8, "")],
 )
 def test_c10_other_settings_sample_the_shot_again(
-    any_shot: Scene, lines: Lines, tmp_path: Path, name: str, value: int, why: str
+    any_shot: Scene,
+    lines: Lines,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    value: int,
+    why: str,
 ) -> None:
+    monkeypatch.setattr(sys, "argv", [*sys.argv, "--", "--gradus-net-samples", "8"])
     animate(any_shot, tmp_path / "before")
     setattr(any_shot.gradus, name, value)
     found = animate(any_shot, tmp_path / "found")

@@ -114,14 +114,15 @@ def test_shows_what_cycles_shows(scene: bpy.types.Scene, render: Callable[..., A
     _prepare(scene)
     _camera(scene, *CASES[case])
     ours, cycles = _both(scene, render)
-    seen = np.any(cycles["Position"] != 0.0, axis=2)
-    assert np.array_equal(np.any(ours["Position"] != 0.0, axis=2), seen)
+    seen, ours_seen = (np.any(passes["Position"] != 0.0, axis=2) for passes in (cycles, ours))
+    assert (seen != ours_seen).sum() <= 1, "an outline may pass through the middle of a pixel"
+    seen &= ours_seen
     assert seen.any()
     # A hundredth of a pixel, the width of the filter, is up to 2 * pi * RADIUS / 24 / 100 wide.
     away = np.linalg.norm(ours["Position"] - cycles["Position"], axis=2)[seen]
     assert np.percentile(away, 90) < 0.15 and away.max() < 1.0
-    assert np.allclose(ours["Depth"], cycles["Depth"], rtol=5e-3)
-    assert np.allclose(ours["Mist"], cycles["Mist"], atol=5e-3)
+    assert np.allclose(ours["Depth"][seen], cycles["Depth"][seen], rtol=5e-3)
+    assert np.allclose(ours["Mist"][seen], cycles["Mist"][seen], atol=5e-3)
     assert np.allclose(ours["Normal"][seen], cycles["Normal"][seen], atol=0.15)
 
 

@@ -62,7 +62,7 @@ def test_passes_of_sheets_are_those_of_cycles(sheets: bpy.types.Scene, tmp_path:
     """Mist was negative and ambient occlusion above 1: the chance to pass a sheet was counted, its opacity was not."""
     expected, found = (picture_of(sheets, tmp_path, engine, names) for engine in ("CYCLES", "GRADUS"))
     assert expected.max() > expected.min() + 0.2
-    np.testing.assert_allclose(found, expected, atol=0.03)
+    np.testing.assert_allclose(found, expected, atol=0.05)
     np.testing.assert_allclose(found.mean(), expected.mean(), rtol=0.01)
 
 
