@@ -33,7 +33,6 @@ struct LoopInput {
   // Samples of the whole frame, fresh and replayed, for which the render is planned; 0: the number in the settings.
   uint32_t whole_samples = 0;
   std::shared_ptr<const Replay> replay;  // nullptr: the samples are the frame's own
-
   bool is_replayed = false;              // whether replays of the samples are compared with them
 
   // Returns whether the samples are replayed, or compared with replayed ones.
