@@ -227,8 +227,8 @@ def show_pixels(scene: Scene) -> None:
     texture = nodes.new("ShaderNodeTexImage")
     texture.image = image
     links.new(texture.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
-    lamp = bpy.data.lights.new("Lamp", "POINT")
-    scene.collection.objects.link(bpy.data.objects.new("Lamp", lamp))
+    light = bpy.data.lights.new("Light", "POINT")
+    scene.collection.objects.link(bpy.data.objects.new("Light", light))
 
 
 @pytest.mark.parametrize("change", [blur, ask_for_vectors, keep_data, see_with_two_eyes, drop_a_body, show_pixels])
@@ -251,7 +251,7 @@ def paint(frame: int) -> None:
 
 
 def dim(frame: int) -> None:
-    bpy.data.lights["Lamp"].energy = 10.0 * frame
+    bpy.data.lights["Light"].energy = 10.0 * frame
 
 
 def turn_temporal_off(frame: int) -> None:
@@ -316,7 +316,7 @@ def change_topology(scene: Scene) -> None:
 
 def switch_a_light_on(scene: Scene) -> None:
     add_guest(scene.collection)
-    key_switch(bpy.data.objects["Lamp"], "hide_render")
+    key_switch(bpy.data.objects["Light"], "hide_render")
 
 
 APPEARANCES = [show_an_object, show_an_instanced_collection, show_copies, change_topology, switch_a_light_on]

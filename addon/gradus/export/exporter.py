@@ -76,7 +76,7 @@ class Exporter:
         digest = Digest() if with_digest else None
         run = _Sync(self, depsgraph, engine, view, wanted, views, Poll(cancelled), digest, space, is_preview)
         tables = ((KIND_MESH, self._meshes), (KIND_IMAGE, self._images), (KIND_MATERIAL, self._materials))
-        for table in (self._ids, *(table for _, table in tables)):
+        for _, table in tables:
             table.begin()
         try:
             run.run()
@@ -87,7 +87,6 @@ class Exporter:
         finally:
             if view is not None or is_preview:
                 blender_pixels.release()  # final renders do it when their job ends
-        self._ids.end()
         for kind, table in tables:
             for key in table.sweep():
                 self._target.remove(kind, key)
@@ -293,8 +292,7 @@ class _Sync:
 
     def _set_instances(self, collected: Collected, mesh_of: dict[Shape, int], moments: motion.Moments) -> None:
         mesh_keys = [mesh_of[self._shape(entry)] for entry in collected.surfaces]
-        self._ids.show(entry.key for entry in collected.surfaces)
-        arrays = instances.instance_arrays(collected, mesh_keys, self._ids.id)
+        arrays = instances.instance_arrays(collected, mesh_keys, self._ids)
         if self._wanted.vectors:
             around = (moments[time] for time in motion.NEIGHBORS)
             arrays.previous, arrays.following = (self._matrices_at(arrays.entries, moment) for moment in around)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 from .. import native
-from .collect import Collected, Entry, InstanceKey
+from .collect import Collected, Entry
+from .keys import InstanceIds
 from .light_linking import NO_LINKS
 from .motion import InstanceBlur
 from .properties import MISSING, Color
@@ -41,19 +41,14 @@ class InstanceArrays:
     attribute_names: list[str] = field(default_factory=list)
 
 
-def instance_arrays(
-    collected: Collected, mesh_keys: list[int], instance_id: Callable[[InstanceKey, tuple[str, str]], int]
-) -> InstanceArrays:
-    """Returns arrays of the surfaces that have a mesh.
-
-    mesh_keys: the key of each surface's mesh, or 0. instance_id: returns the id of an instance by its key and names.
-    """
+def instance_arrays(collected: Collected, mesh_keys: list[int], ids: InstanceIds) -> InstanceArrays:
+    """Returns arrays of the surfaces that have a mesh. mesh_keys: the key of each surface's mesh, or 0."""
     entries = [entry for entry, key in zip(collected.surfaces, mesh_keys, strict=True) if key]
     arrays = InstanceArrays(
         entries=entries,
         matrices=_pick(collected.matrices, entries),
         mesh_keys=array("Q", filter(None, mesh_keys)),
-        ids=array("Q", [instance_id(entry.key, entry.full_names) for entry in entries]),
+        ids=array("Q", ids.of([(entry.key, entry.full_names) for entry in entries])),
         materials=array("Q"),
         material_first=array("I"),
         material_count=array("I"),

@@ -7,7 +7,7 @@ numbered in the order of first appearance, so that they do not depend on Blender
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Sequence
 
 KIND_MESH, KIND_IMAGE, KIND_MATERIAL = 0, 1, 2
 
@@ -75,40 +75,26 @@ class InstanceIds:
     """
 
     def __init__(self) -> None:
-        self._ids: dict[tuple[int, ...], int] = {}
-        self._last_ids: dict[tuple[int, ...], int] = {}  # of the sync before, so that few ids are computed again
+        self._ids: dict[tuple[int, ...], int] = {}  # of the last sync, so that few ids are computed again
         self._names: dict[int, str] = {}  # by the address of the object
         self._addresses: dict[str, int] = {}  # by name
-        self._shown: set[int] = set()  # addresses of the objects and instancers of this sync
+        self._shown: set[int] = set()  # addresses of the objects and instancers of the sync
 
-    def begin(self) -> None:
-        """Starts a sync, in which no id is used yet."""
-        self._last_ids, self._ids = self._ids, {}
+    def of(self, instances: Sequence[tuple[tuple[int, ...], tuple[str, str]]]) -> list[int]:
+        """Returns the ids of all instances that a sync shows, each given by its key and its names.
 
-    def show(self, keys: Iterable[tuple[int, ...]]) -> None:
-        """Says which instances this sync shows. Names of objects that it does not show may pass to others."""
-        self._shown = {address for key in keys for address in key[:2]}
-
-    def end(self) -> None:
-        """Ends a sync: drops all ids that were not used."""
-        self._last_ids = {}
-
-    def id(self, key: tuple[int, ...], names: tuple[str, str]) -> int:
-        """Returns the id of an instance.
-
-        key: the addresses of its object and of its instancer, or 0, and its numbers. names: those of both objects.
+        A key has the addresses of the object and of its instancer, or 0, and the numbers of the instance. The names are
+        those of both objects. Names of objects that the sync does not show may pass to others.
         """
-        found = self._ids.get(key)
-        if found is None:
-            found = self._last_ids.get(key)
-            if found is None:
-                found = self._hash(key, names)
-            self._ids[key] = found
-        return found
+        self._shown = {address for key, _ in instances for address in key[:2]}
+        last, self._ids = self._ids, {}
+        for key, names in instances:
+            self._ids[key] = last.get(key) or self._hash(key, names)
+        return [self._ids[key] for key, _ in instances]
 
     def forget(self) -> None:
         """Drops all ids and names at the end of a job, because objects may be renamed before the next one."""
-        for kept in (self._ids, self._last_ids, self._names, self._addresses):
+        for kept in (self._ids, self._names, self._addresses):
             kept.clear()
 
     def _hash(self, key: tuple[int, ...], names: tuple[str, str]) -> int:

@@ -59,7 +59,7 @@ std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const scene::
   before->stream_frame = fresh != nullptr ? fresh->frame_number : settings.frame;
   if (fresh != nullptr) {
     before->sampled = fresh->region;
-    before->net_samples = fresh->settings.net_samples;
+    if (takes_replays(settings)) before->net_samples = fresh->settings.net_samples;
   }
   return before;
 }

@@ -39,7 +39,7 @@ struct PreviousFrame {
   GradusSettings settings{};
   // Frame whose random numbers the fresh samples use: this one, or the first one of a series of identical frames.
   int32_t stream_frame = 0;
-  uint32_t net_samples = 0;       // of the film of the fresh samples
+  uint32_t net_samples = 0;       // of the film of the fresh samples, if samples are replayed
   std::vector<uint32_t> counts;   // samples of each pixel; empty: as many as in the settings, or not known
   std::optional<Region> sampled;  // region of the fresh samples; without a value: the frame was not sampled
 };

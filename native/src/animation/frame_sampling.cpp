@@ -277,7 +277,7 @@ bool FrameSampling::replays_before(const film::FilmHeader& replayed) const {
   if (!follows_before()) return replayed.replayed_frame == input_.settings.frame;
   const bool shows_it = replayed.replayed_key == 0 || replayed.replayed_key == before->snapshot->content_key;
   return replayed.replayed_frame == before->stream_frame && replayed.replayed_seed == before->settings.seed &&
-         replayed.replayed_net_samples == (takes_replays(input_.settings) ? before->net_samples : 0) && shows_it;
+         replayed.replayed_net_samples == before->net_samples && shows_it;
 }
 
 std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHeader& fresh,

@@ -102,7 +102,7 @@ film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapsh
                              scene.content_key,
                              before.settings.seed,
                              shares,
-                             takes_replays(settings) ? before.net_samples : 0};
+                             before.net_samples};
   replay_map.of_component =
       correspondences_of_components(from, to, settings, components, correspondence, replay_map.correspondence, cancel);
   render::limit_component_replays(&replay_map);

@@ -47,6 +47,10 @@ Stream find_stream(const path::PathContext& context, const WorkUnit& unit, const
   return stream_of_pixel(context, replayed, film.gradients, x0 + pixel % width, film.region.y0 + pixel / width);
 }
 
+path::Sampler make_sampler(const path::PathContext& context, const path::SampleKey& key) {
+  return path::Sampler(key, context.settings.independent_sampler != 0);
+}
+
 path::Sampler sampler_of_pixel(const path::PathContext& context, const Stream& stream, uint32_t net_samples,
                                uint32_t number) {
   const Stream place = GRADUS_FAULT(random_stream_shared_by_pixels) ? Stream{} : stream;
@@ -57,16 +61,15 @@ path::Sampler sampler_of_pixel(const path::PathContext& context, const Stream& s
   } else {
     key.stream = y * context.settings.width + x;
   }
-  return path::Sampler(key, context.settings.independent_sampler != 0);
+  return make_sampler(context, key);
 }
 
 // Returns the jitter of the pixel block that contains a pixel of the stream.
 Vec2 jitter_of_block(const path::PathContext& context, const Stream& stream, uint32_t number) {
   const uint32_t column = static_cast<uint32_t>(film::pixel_block_of(stream.x)),
                  row = static_cast<uint32_t>(film::pixel_block_of(stream.y));
-  const path::Sampler sampler(
-      {stream.seed, path::StreamKind::PixelBlock, (row << 16) ^ (column & 0xffffu), stream.frame, number},
-      context.settings.independent_sampler != 0);
+  const path::Sampler sampler = make_sampler(
+      context, {stream.seed, path::StreamKind::PixelBlock, (row << 16) ^ (column & 0xffffu), stream.frame, number});
   return context.filter.sample(sampler.get2(path::dimension::kFilm));
 }
 

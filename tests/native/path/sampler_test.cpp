@@ -62,36 +62,13 @@ TEST(L4_Sampler, EachFieldOfTheKeyMatters) {
   }
 }
 
-// Each aligned block of 2^k points of one half-buffer is a (0, k, 2)-net: one point in every elementary interval.
-TEST(L4_Sampler, HalvesAreNets) {
-  for (uint32_t half = 0; half < 2; ++half) {
-    for (int log_x = 0; log_x <= 6; ++log_x) {
-      std::vector<int> cells(64, 0);
-      for (uint32_t i = 0; i < 64; ++i) {
-        const Vec2 u = path::Sampler(key_of(3, 99, 2 * i + half)).get2(11);
-        ASSERT_GE(u.x, 0.0f);
-        ASSERT_LT(u.x, 1.0f);
-        ASSERT_LT(u.y, 1.0f);
-        const int x = static_cast<int>(u.x * static_cast<float>(1 << log_x));
-        const int y = static_cast<int>(u.y * static_cast<float>(64 >> log_x));
-        ++cells[static_cast<size_t>((x << (6 - log_x)) + y)];
-      }
-      for (int count : cells) {
-        EXPECT_EQ(count, 1) << "split " << log_x;
-      }
-    }
-  }
-}
-
-path::Sampler sampler_of_pixel(uint32_t x, uint32_t y, uint32_t index, uint32_t net_samples) {
-  path::SampleKey key = key_of(3, 0, index);
-  key.net_samples = net_samples;
-  key.morton = path::morton_code(x, y);
-  return path::Sampler(key);
-}
-
 // Expects one point in each elementary interval of the area 1/points.size(), whose number is a power of two.
 void expect_net(const std::vector<Vec2>& points) {
+  for (const Vec2& u : points) {
+    ASSERT_GE(u.x, 0.0f);
+    ASSERT_LT(u.x, 1.0f);
+    ASSERT_LT(u.y, 1.0f);
+  }
   const int log_count = std::countr_zero(points.size());
   for (int log_x = 0; log_x <= log_count; ++log_x) {
     std::vector<int> cells(points.size(), 0);
@@ -101,6 +78,22 @@ void expect_net(const std::vector<Vec2>& points) {
     }
     for (const int count : cells) ASSERT_EQ(count, 1) << "split " << log_x;
   }
+}
+
+// Each aligned block of 2^k points of one half-buffer is a (0, k, 2)-net: one point in every elementary interval.
+TEST(L4_Sampler, HalvesAreNets) {
+  for (uint32_t half = 0; half < 2; ++half) {
+    std::vector<Vec2> points;
+    for (uint32_t i = 0; i < 64; ++i) points.push_back(path::Sampler(key_of(3, 99, 2 * i + half)).get2(11));
+    expect_net(points);
+  }
+}
+
+path::Sampler sampler_of_pixel(uint32_t x, uint32_t y, uint32_t index, uint32_t net_samples) {
+  path::SampleKey key = key_of(3, 0, index);
+  key.net_samples = net_samples;
+  key.morton = path::morton_code(x, y);
+  return path::Sampler(key);
 }
 
 // Returns points of all pixels of an aligned square: those of `count` samples of a half-buffer from number `first` on.
@@ -130,30 +123,6 @@ TEST(L4_Sampler, PixelsShareNets) {
 
 TEST(L4_Sampler, TheFirstSamplesOfAPixelAreNets) {
   for (const uint32_t count : {1u, 2u, 4u, 8u}) expect_net(points_of_square(1, 0, 0, count, 32));
-}
-
-// Half-buffers are independent over squares of pixels, too: (A − B)²/4 estimates the variance of their mean, which is
-// far below that of independent pixels.
-TEST(A8_Variance, HalvesOfNetsOverPixels) {
-  constexpr int kSquares = 4000;
-  double estimated = 0.0, mean = 0.0, squares = 0.0;
-  for (int i = 0; i < kSquares; ++i) {
-    double half[2] = {0.0, 0.0};
-    for (uint32_t k = 0; k < 64 * 4; ++k) {
-      path::SampleKey key = key_of(uint32_t(i), 0, k % 4);
-      key.net_samples = 4;
-      key.morton = path::morton_code(k / 4 % 8, k / 32);
-      const Vec2 u = path::Sampler(key).get2(9);
-      half[k % 2] += std::exp(u.x) * u.y * u.y / 128.0;
-    }
-    const double value = 0.5 * (half[0] + half[1]);
-    estimated += 0.25 * (half[0] - half[1]) * (half[0] - half[1]) / kSquares;
-    mean += value / kSquares;
-    squares += value * value / kSquares;
-  }
-  const double variance = squares - mean * mean;
-  EXPECT_NEAR(estimated / variance, 1.0, 0.1);
-  EXPECT_LT(variance, 1e-5);  // that of one sample is 0.27, of 256 independent ones 1e-3
 }
 
 // Nets of other samples of a pixel, of other sizes, of other half-buffers and of far pixels are independent.
@@ -199,7 +168,7 @@ std::vector<double> residuals(uint32_t seed, uint32_t stream_step, uint32_t bloc
   return means;
 }
 
-// Of streams of single pixels; those that pixels share are correlated between neighbours.
+// Streams of single pixels are independent of each other. In streams that pixels share, neighbours are correlated.
 TEST(A10_Seeds, SamplerResidualsAreUncorrelated) {
   const std::vector<double> base = residuals(1, 0, 4);
   EXPECT_LT(std::fabs(correlation(base, residuals(2, 0, 4))), 0.05) << "seeds";
@@ -208,26 +177,50 @@ TEST(A10_Seeds, SamplerResidualsAreUncorrelated) {
   EXPECT_LT(std::fabs(correlation(base, residuals(1, 0, 5))), 0.05) << "dimensions";
 }
 
-// (A − B)²/4 estimates the variance of the mean: the half-buffers are independent of each other.
-TEST(A8_Variance, HalvesOfTheSampler) {
-  double estimated = 0.0;
-  double mean = 0.0;
-  double squares = 0.0;
-  constexpr int pixels = 20000;
-  for (uint32_t pixel = 0; pixel < pixels; ++pixel) {
+// Variance of the mean of a smooth function over samples of both half-buffers, and (A − B)²/4, which estimates it.
+struct Spread {
+  double variance = 0.0, estimated = 0.0;
+};
+
+// Measures both over `count` means of `samples` samples. sampler_of(i, k) is the sampler of sample k of mean i; even
+// samples are those of half-buffer A.
+template <class SamplerOf>
+Spread spread_of_means(int count, uint32_t samples, const SamplerOf& sampler_of) {
+  double estimated = 0.0, mean = 0.0, squares = 0.0;
+  for (int i = 0; i < count; ++i) {
     double half[2] = {0.0, 0.0};
-    for (uint32_t i = 0; i < 16; ++i) {
-      const Vec2 u = path::Sampler(key_of(5, pixel, i)).get2(9);
-      half[i % 2] += std::exp(u.x) * u.y * u.y / 8.0;
+    for (uint32_t k = 0; k < samples; ++k) {
+      const Vec2 u = sampler_of(uint32_t(i), k).get2(9);
+      half[k % 2] += std::exp(u.x) * u.y * u.y / (0.5 * samples);
     }
     const double value = 0.5 * (half[0] + half[1]);
-    estimated += 0.25 * (half[0] - half[1]) * (half[0] - half[1]) / pixels;
-    mean += value / pixels;
-    squares += value * value / pixels;
+    estimated += 0.25 * (half[0] - half[1]) * (half[0] - half[1]) / count;
+    mean += value / count;
+    squares += value * value / count;
   }
-  const double ratio = estimated / (squares - mean * mean);
-  EXPECT_GT(ratio, 0.9);
-  EXPECT_LT(ratio, 1.1);
+  return {squares - mean * mean, estimated};
+}
+
+// The half-buffers are independent of each other.
+TEST(A8_Variance, HalvesOfTheSampler) {
+  const auto of_pixel = [](uint32_t pixel, uint32_t index) { return path::Sampler(key_of(5, pixel, index)); };
+  const Spread spread = spread_of_means(20000, 16, of_pixel);
+  EXPECT_GT(spread.estimated / spread.variance, 0.9);
+  EXPECT_LT(spread.estimated / spread.variance, 1.1);
+}
+
+// Half-buffers are independent over squares of pixels that share nets, too. The variance of a square's mean is far
+// below that of independent pixels.
+TEST(A8_Variance, HalvesOfNetsOverPixels) {
+  const auto of_square = [](uint32_t seed, uint32_t k) {
+    path::SampleKey key = key_of(seed, 0, k % 4);
+    key.net_samples = 4;
+    key.morton = path::morton_code(k / 4 % 8, k / 32);
+    return path::Sampler(key);
+  };
+  const Spread spread = spread_of_means(4000, 64 * 4, of_square);
+  EXPECT_NEAR(spread.estimated / spread.variance, 1.0, 0.1);
+  EXPECT_LT(spread.variance, 1e-5);  // that of one sample is 0.31, of 256 independent ones 1.2e-3
 }
 
 TEST(Sampler, IndependentValuesHaveTheVarianceOfRandomNumbers) {
