@@ -24,6 +24,9 @@ bool follows(const PreviousFrame* before, const scene::Snapshot& now, const Grad
 
 namespace {
 
+// Roughness α from which on what is seen in a surface is blurred so much that samples follow the surface itself.
+constexpr float kSharpAlpha = 0.02f;
+
 using Correspondences = std::vector<film::PixelCorrespondence>;
 
 // Returns the pixel correspondence of Residual. Its light is mostly seen in mirrors of mirrors, so it follows a
@@ -64,14 +67,16 @@ Correspondences correspondences_of_components(const motion::CentreView& from, co
   return of_component;
 }
 
-// Returns the pixel correspondence of what gives each pixel most of its light. `surface`: that of the surfaces.
+// Returns the pixel correspondence of what each pixel mainly shows. `surface`: that of the surfaces, which is followed
+// unless they are mirrors or clear glass.
 film::PixelCorrespondence correspondence_of_dominant(const motion::CentreView& from, const motion::CentreView& to,
                                                      const GradusSettings& settings, film::PixelCorrespondence surface,
                                                      const CancelCheck& cancel) {
-  const float sharp = std::max(settings.roughness_threshold, bsdf::kSmallestAlpha);
-  const bool all_are_rough = from.snapshot->features.min_alpha >= sharp;
-  if (all_are_rough || GRADUS_FAULT(joined_light_follows_surfaces)) return surface;
-  const motion::ChainTracer tracer{*to.snapshot, to.camera, settings};
+  GradusSettings of_sharp = settings;
+  of_sharp.roughness_threshold = std::min(std::max(settings.roughness_threshold, bsdf::kSmallestAlpha), kSharpAlpha);
+  const bool all_are_blurred = from.snapshot->features.min_alpha >= of_sharp.roughness_threshold;
+  if (all_are_blurred || GRADUS_FAULT(joined_light_follows_surfaces)) return surface;
+  const motion::ChainTracer tracer{*to.snapshot, to.camera, of_sharp};
   motion::ChainMotion motion = motion::track_dominant(from, tracer, cancel);
   if (cancel()) return {};
   motion::lose_strayed_chains(from, to, &motion);

@@ -39,6 +39,7 @@
   X(filter_distances_shifted)                    \
   X(samples_of_another_frame)                    \
   X(displacements_dropped)                       \
+  X(denoiser_reads_displaced_light)              \
   X(hidden_samples_kept)                         \
   X(light_test_off)                              \
   X(moved_halves_dropped)                        \

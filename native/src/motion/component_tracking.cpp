@@ -5,15 +5,13 @@
 #include <utility>
 
 #include "base/fault.h"
+#include "bsdf/closures.h"
 #include "motion/pixel_matching.h"
 #include "motion/snapshot_motion.h"
 
 namespace gradus::motion {
 
 namespace {
-
-// Probability of class D above which a surface is more non-specular than specular.
-constexpr float kDominant = 0.5f;
 
 // Returns a copy of rows [y0, y1) of a view.
 CentreView rows_of(const CentreView& view, int32_t y0, int32_t y1) {
@@ -73,7 +71,7 @@ std::vector<ChainMotion> track_components(const CentreView& from, const ChainTra
 
 ChainMotion track_dominant(const CentreView& from, const ChainTracer& to, const CancelCheck& is_cancelled) {
   const lpe::ComponentSet whole_picture;
-  return std::move(track(from, to, whole_picture, whole_picture.all(), kDominant, is_cancelled).front());
+  return std::move(track(from, to, whole_picture, whole_picture.all(), bsdf::kMostlySpecular, is_cancelled).front());
 }
 
 bool is_seen_through_smooth(const ChainMotion& motion) {

@@ -14,9 +14,9 @@ namespace gradus::motion {
 std::vector<ChainMotion> track_components(const CentreView& from, const ChainTracer& to,
                                           const lpe::ComponentSet& components, uint32_t wanted,
                                           const CancelCheck& is_cancelled);
-// Returns the motion of what gives each pixel of `from` most of its light, as far as the probabilities of scattering
-// classes tell: it is seen through smooth surfaces as long as they are more specular than not, by the stronger of
-// reflection and transmission. Tracking is NoPath elsewhere.
+// Returns the motion of what each pixel of `from` mainly shows, as far as the probabilities of scattering classes tell:
+// it is seen through smooth surfaces that are mostly specular (kMostlySpecular), by the stronger of reflection and
+// transmission. Tracking is NoPath elsewhere.
 ChainMotion track_dominant(const CentreView& from, const ChainTracer& to, const CancelCheck& is_cancelled);
 // Whether the component is seen through smooth surfaces in some pixel.
 bool is_seen_through_smooth(const ChainMotion& motion);

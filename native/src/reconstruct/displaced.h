@@ -14,6 +14,15 @@ struct Displacement {
   float x, y, xx, xy, yy;
 };
 inline Displacement displaced_by(const Vec2& by) { return {by.x, by.y, by.x * by.x, by.x * by.y, by.y * by.y}; }
+// Adds the displacement of a sample, times its weight, to sums.
+inline void add(float weight, const Vec2& by, Displacement* sums) {
+  const Displacement of_sample = displaced_by(by);
+  sums->x += weight * of_sample.x;
+  sums->y += weight * of_sample.y;
+  sums->xx += weight * of_sample.xx;
+  sums->xy += weight * of_sample.xy;
+  sums->yy += weight * of_sample.yy;
+}
 inline constexpr int kDisplacementChannels = 5;  // of a field of displacements, in this order
 
 // A row of one channel of an image and the rows above and below. The border pixels repeat.
@@ -21,7 +30,8 @@ class RowsAround {
  public:
   explicit RowsAround(int width);
   void read(const Field& image, int y, int channel);
-  // Returns how the image changes, in the mean, from the centre of pixel x of the row to the displaced places.
+  // Returns how the image changes, in the mean, from the centre of pixel x of the row to the displaced places. This is
+  // linear in `by`, so that sums give sums.
   float change(int x, const Displacement& by) const {
     const float *below = row(-1) + x, *at = row(0) + x, *above = row(1) + x;
     const float along_x = at[1] - at[-1], along_y = above[0] - below[0];

@@ -372,21 +372,36 @@ PictureSamples JoinedSamples::picture(const HalvedImage& image, film::Features* 
   return planes.take(noise_around(image), features);
 }
 
-SampledPicture JoinedSamples::sampled(film::Features features) const {
+SampledPicture JoinedSamples::sampled(film::Features features, const Field& regressed) const {
   const int w = here_.width, h = here_.height;
   SampledPicture picture{std::vector<float>(3 * here_.pixels.size()), std::move(features.albedo.values),
                          std::move(features.normal.values)};
-  for_rows(h, [&](int y) {
-    const std::vector<MovedRow> rows = rows_of(others_, here_, y);
-    for (int x = 0; x < w; ++x) {
-      LightSums sums;
-      sums.add(1.0f, load(here_.at(y * w + x)));
-      for (const MovedRow& row : rows) {
-        const SampleOfPixel sample = row.sample(x);
-        if (sample.record != nullptr) sums.add(sampled_weight(sample), load(sample.record));
+  for_pieces(h, [&](int begin, int end) {
+    std::vector<RowsAround> around(kColors, RowsAround(w));
+    for (int y = begin; y < end; ++y) {
+      for (int c = 0; c < kColors; ++c) around[size_t(c)].read(regressed, y, c);
+      const std::vector<MovedRow> rows = rows_of(others_, here_, y);
+      for (int x = 0; x < w; ++x) {
+        LightSums sums;
+        Displacement displacements{};
+        sums.add(1.0f, load(here_.at(y * w + x)));
+        for (const MovedRow& row : rows) {
+          const SampleOfPixel sample = row.sample(x);
+          if (sample.record == nullptr) continue;
+          const float weight = sampled_weight(sample);
+          sums.add(weight, load(sample.record));
+          add(weight, sample.displacement, &displacements);
+        }
+        const float unit = 1.0f / sums.weight();
+        const std::array<float, kLanes> means = sums.means();
+        float* to = picture.light.data() + 3 * (size_t(y) * size_t(w) + size_t(x));
+        for (size_t c = 0; c < kColors; ++c) {
+          const float light = means[kRecordMean + c];
+          const float change =
+              GRADUS_FAULT(denoiser_reads_displaced_light) ? 0.0f : unit * around[c].change(x, displacements);
+          to[c] = std::max(light - change, std::min(light, 0.0f));
+        }
       }
-      const std::array<float, kLanes> means = sums.means();
-      std::copy_n(means.begin() + kRecordMean, 3, picture.light.begin() + 3 * (ptrdiff_t(y) * w + x));
     }
   });
   return picture;

@@ -27,9 +27,10 @@ class JoinedSamples {
   // receives the features of the pixels to estimate: the means near the centres of pixels, filtered by the noise that
   // the frames show. Their depth is relative (feature_regression.h).
   PictureSamples picture(const HalvedImage& image, film::Features* features) const;
-  // Returns the mean light near the centres of pixels, in the units of the film, with these features.
-  SampledPicture sampled(film::Features features) const;
-  // Returns the means of the terms of all frames with the same weights. read(number) returns those of a frame, `own`
+  // Returns the mean light near the centres of pixels, in the units of the film, with these features. `regressed` are
+  // the colours of the picture in the same units: light is moved to the centres by what they change up to there.
+  SampledPicture sampled(film::Features features, const Field& regressed) const;
+  // Returns the means of the terms of all frames with the same weights, which stay where the samples lie. read(number) returns those of a frame, `own`
   // are those of the picture's own frame. Light without noise stays as it is there. Frames that have another number of
   // terms are left out.
   SampledTerms sampled(SampledTerms own, const std::function<SampledTerms(int number)>& read) const;

@@ -6,9 +6,23 @@
 
 #include "base/error.h"
 #include "base/fault.h"
+#include "reconstruct/field_values.h"
 #include "reconstruct/regularized.h"
 
 namespace gradus::reconstruct {
+namespace {
+
+// Returns the colours of an interleaved image.
+Field colors_of(const std::vector<float>& image, int width, int height) {
+  const size_t channels = image.size() / (size_t(width) * size_t(height));
+  Field colors(width, height, kColors);
+  for_values(&colors, [&](float& value, int x, int y, int c) {
+    value = image[(size_t(y) * size_t(width) + size_t(x)) * channels + size_t(c)];
+  });
+  return colors;
+}
+
+}  // namespace
 
 void JointRegression::read(int number, const CancelCheck& cancel) {
   if (frames_.count(number) > 0) return;
@@ -90,7 +104,10 @@ Reconstructed JointRegression::reconstruct(int number, const FrameRange& around,
                   [&](int component, int first, const Field& own) { return joined.join(component, first, own); },
                   components_of(here), wanted.components},
                  cancel, report);
-  if (wanted.sampled) result.sampled = std::make_shared<const SampledPicture>(joined.sampled(std::move(features)));
+  if (wanted.sampled) {
+    const Field regressed = colors_of(result.image, here.width, here.height);
+    result.sampled = std::make_shared<const SampledPicture>(joined.sampled(std::move(features), regressed));
+  }
   if (wanted.terms) {
     const auto read_terms = [&](int other) { return wanted.terms(*open_film_(other, cancel)); };
     result.sampled_terms = std::make_shared<const SampledTerms>(joined.sampled(read_terms(number), read_terms));
