@@ -52,6 +52,7 @@ LABELS = {
     "nfor-frames": "NFOR over five frames (Bitterli et al. 2016)",
     "regularized-frame": "Gradus REGULARIZED, frame by frame",
     "regularized": "**Gradus REGULARIZED over frames**",
+    "delivered": "**Gradus REGULARIZED over frames, with its denoiser**",
 }
 MEASURES = ("flicker", "flicker_trimmed", "flicker_noise", "flicker_bias", "relmse", "relmse_trimmed", "noise", "bias")
 
@@ -116,10 +117,11 @@ def frames_around(store: Path, numbers: Sequence[int], part: Part, margin: int) 
     return animations.read_frames(store, numbers, (wide.rows, wide.columns)), part.inside(wide)
 
 
-def by_product(store: Path, numbers: Sequence[int], part: Part) -> np.ndarray:
+def by_product(store: Path, numbers: Sequence[int], part: Part, denoised: bool = False) -> np.ndarray:
     """Returns pictures of the tool over frames."""
     with tempfile.TemporaryDirectory() as folder:
-        _reconstruct(store, Path(folder), "regularized", "--frames", f"{numbers[0]}-{numbers[-1]}")
+        frames = ("--frames", f"{numbers[0]}-{numbers[-1]}")
+        _reconstruct(store, Path(folder), "regularized", *frames, *denoiser(denoised))
         return part.of(images_of(Path(folder), numbers))
 
 
@@ -134,8 +136,17 @@ def frame_by_frame(
         return part.of(images_of(Path(folder), numbers))
 
 
+def by_regularized(store: Path, numbers: Sequence[int], part: Part) -> np.ndarray:
+    return frame_by_frame(store, numbers, part, "regularized", *denoiser(False))
+
+
 def by_oidn(store: Path, numbers: Sequence[int], part: Part) -> np.ndarray:
-    return frame_by_frame(store, numbers, part, "none", "--denoiser", "oidn", "--denoiser-path", bundled_libraries())
+    return frame_by_frame(store, numbers, part, "none", *denoiser(True))
+
+
+def denoiser(is_used: bool) -> tuple[str | Path, ...]:
+    """Returns options of the tool."""
+    return ("--denoiser", "oidn", "--denoiser-path", bundled_libraries()) if is_used else ("--denoiser", "none")
 
 
 def _reconstruct(source: Path, target: Path, reconstruction: str, *more: str | Path) -> None:
@@ -165,8 +176,9 @@ BY: dict[str, Callable[[Path, Sequence[int], Part], np.ndarray]] = {
     "svgf": by_svgf,
     "nfor": partial(by_nfor, reach=0),
     "nfor-frames": partial(by_nfor, reach=REACH),
-    "regularized-frame": partial(frame_by_frame, reconstruction="regularized"),
+    "regularized-frame": by_regularized,
     "regularized": by_product,
+    "delivered": partial(by_product, denoised=True),
 }
 
 
