@@ -447,7 +447,7 @@ ROWS: tuple[dict[str, Any], ...] = (
             "In animations with components and the reconstruction L2 or L1, compares what mirrors and glass show "
             "with the place where it was a frame before. Off: with the place where the mirror or the glass was. On "
             "leaves less flicker where the two move differently, and takes about a third more time where cameras or"
-            " mirrors move. Regularized follows what gives most light"
+            " mirrors move. Regularized follows what mirrors and clear glass show, and other surfaces themselves"
         ),
     ),
     dict(

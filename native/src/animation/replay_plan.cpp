@@ -24,7 +24,7 @@ bool follows(const PreviousFrame* before, const scene::Snapshot& now, const Grad
 
 namespace {
 
-// Roughness α from which on what is seen in a surface is blurred so much that samples follow the surface itself.
+// Smallest roughness α at which samples follow a surface itself and not what it reflects.
 constexpr float kSharpAlpha = 0.02f;
 
 using Correspondences = std::vector<film::PixelCorrespondence>;
@@ -72,11 +72,12 @@ Correspondences correspondences_of_components(const motion::CentreView& from, co
 film::PixelCorrespondence correspondence_of_dominant(const motion::CentreView& from, const motion::CentreView& to,
                                                      const GradusSettings& settings, film::PixelCorrespondence surface,
                                                      const CancelCheck& cancel) {
-  GradusSettings of_sharp = settings;
-  of_sharp.roughness_threshold = std::min(std::max(settings.roughness_threshold, bsdf::kSmallestAlpha), kSharpAlpha);
-  const bool all_are_blurred = from.snapshot->features.min_alpha >= of_sharp.roughness_threshold;
+  GradusSettings settings_of_mirrors = settings;
+  const float sharp = std::max(settings.roughness_threshold, bsdf::kSmallestAlpha);
+  settings_of_mirrors.roughness_threshold = std::min(sharp, kSharpAlpha);
+  const bool all_are_blurred = from.snapshot->features.min_alpha >= settings_of_mirrors.roughness_threshold;
   if (all_are_blurred || GRADUS_FAULT(joined_light_follows_surfaces)) return surface;
-  const motion::ChainTracer tracer{*to.snapshot, to.camera, of_sharp};
+  const motion::ChainTracer tracer{*to.snapshot, to.camera, settings_of_mirrors};
   motion::ChainMotion motion = motion::track_dominant(from, tracer, cancel);
   if (cancel()) return {};
   motion::lose_strayed_chains(from, to, &motion);

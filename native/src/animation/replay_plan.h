@@ -17,9 +17,9 @@ bool follows(const PreviousFrame* before, const scene::Snapshot& now, const Grad
 
 // Returns for each pixel of the frame `fresh` the pixel of the previous frame that shows the same surface point.
 // Components that are seen through smooth surfaces have maps of their own, to the pixel in which the smooth surfaces
-// show the same point. If frames are joined and nothing is replayed, all light of a pixel follows what gives most of
-// it: where a mirror or glass does, the point that is seen in it; and pixels that lie at an edge in one of both frames
-// alone have none (motion/parting_edges.h). The map is empty after cancelling.
+// show the same point. If frames are joined and nothing is replayed, all light of a pixel follows what it mainly shows:
+// the point that is seen in a mirror or clear glass, and other surfaces themselves; and pixels that lie at an edge in
+// one of both frames alone have none (motion/parting_edges.h). The map is empty after cancelling.
 film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapshot& now, const GradusSettings& settings,
                                 const lpe::ComponentSet& components, const film::FilmHeader& fresh,
                                 const CancelCheck& cancel);

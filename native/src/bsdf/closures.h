@@ -194,9 +194,10 @@ Rgb lobe_albedo(Lobe* lobe, const Vec3& wo, const Vec3& geometric_normal);
 
 inline constexpr int kMaxLobes = 12;
 
-// Probability of the classes that are not specular below which a surface shows little else than what it reflects and
-// refracts. Cycles' denoiser draws the same line for its features.
-inline constexpr float kMostlySpecular = 0.25f;
+// Largest probability of the classes that are not specular at which a surface counts as a mirror or clear glass, which
+// shows little else than what it reflects and refracts. Up to Blender 4.5 the features of Cycles' denoiser looked
+// through the same ones.
+inline constexpr float kMaxNonSpecular = 0.25f;
 
 // The lobes of a surface point. A caller adds lobes, calls finish(), and then evaluates and samples.
 class Closures {

@@ -71,7 +71,7 @@ std::vector<ChainMotion> track_components(const CentreView& from, const ChainTra
 
 ChainMotion track_dominant(const CentreView& from, const ChainTracer& to, const CancelCheck& is_cancelled) {
   const lpe::ComponentSet whole_picture;
-  return std::move(track(from, to, whole_picture, whole_picture.all(), bsdf::kMostlySpecular, is_cancelled).front());
+  return std::move(track(from, to, whole_picture, whole_picture.all(), bsdf::kMaxNonSpecular, is_cancelled).front());
 }
 
 bool is_seen_through_smooth(const ChainMotion& motion) {

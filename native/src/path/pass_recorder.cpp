@@ -354,7 +354,7 @@ void PassRecorder::background_motion(const Vec3& direction) {
 void PassRecorder::features(const PathState& state, const Vertex& vertex) {
   const bsdf::Closures& closures = vertex.shade.closures;
   add_albedo(state.throughput * vertex.shade.emission);
-  const bool mirror = !closures.empty() && closures.non_specular_probability() < bsdf::kMostlySpecular;
+  const bool mirror = !closures.empty() && closures.non_specular_probability() <= bsdf::kMaxNonSpecular;
   if (mirror && !state.emission_only) {
     return;
   }

@@ -14,15 +14,6 @@ struct Displacement {
   float x, y, xx, xy, yy;
 };
 inline Displacement displaced_by(const Vec2& by) { return {by.x, by.y, by.x * by.x, by.x * by.y, by.y * by.y}; }
-// Adds the displacement of a sample, times its weight, to sums.
-inline void add(float weight, const Vec2& by, Displacement* sums) {
-  const Displacement of_sample = displaced_by(by);
-  sums->x += weight * of_sample.x;
-  sums->y += weight * of_sample.y;
-  sums->xx += weight * of_sample.xx;
-  sums->xy += weight * of_sample.xy;
-  sums->yy += weight * of_sample.yy;
-}
 inline constexpr int kDisplacementChannels = 5;  // of a field of displacements, in this order
 
 // A row of one channel of an image and the rows above and below. The border pixels repeat.
@@ -30,8 +21,7 @@ class RowsAround {
  public:
   explicit RowsAround(int width);
   void read(const Field& image, int y, int channel);
-  // Returns how the image changes, in the mean, from the centre of pixel x of the row to the displaced places. This is
-  // linear in `by`, so that sums give sums.
+  // Returns how the image changes, in the mean, from the centre of pixel x of the row to the displaced places.
   float change(int x, const Displacement& by) const {
     const float *below = row(-1) + x, *at = row(0) + x, *above = row(1) + x;
     const float along_x = at[1] - at[-1], along_y = above[0] - below[0];
@@ -39,6 +29,10 @@ class RowsAround {
     const float twist = above[1] - above[-1] - below[1] + below[-1];
     return 0.5f * (by.x * along_x + by.xx * bend_x + by.y * along_y + by.yy * bend_y) + 0.25f * by.xy * twist;
   }
+
+  // Returns the image, in the mean, at the places displaced from the centre of pixel x of the row, within the range of
+  // the 3×3 pixels there.
+  float limited(int x, const Displacement& by) const;
 
  private:
   const float* row(int j) const { return values_.data() + size_t(j + 1) * (size_t(width_) + 2) + 1; }
@@ -49,5 +43,8 @@ class RowsAround {
 
 // Returns the mean of the image at the places to which the samples of each pixel are displaced.
 Field displaced(const Field& image, const Field& displacements);
+// Moves means of samples to the centres of their pixels: subtracts how `picture`, which shows the same, changes from
+// there to the places to which the samples are displaced. No value becomes negative or loses its sign.
+void move_to_centres(const Field& picture, const Field& displacements, Field* means);
 
 }  // namespace gradus::reconstruct

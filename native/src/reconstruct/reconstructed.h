@@ -17,8 +17,8 @@ struct ErrorTerms {
   std::vector<float> l2_difference;  // the image minus the one by L2; empty if the reconstruction is linear
 };
 
-// What several frames have sampled of the pixels of a picture, joined: light and features, 3 values per pixel each. A
-// denoiser reads it.
+// What several frames have sampled of the pixels of a picture, joined: light, moved to the centres of pixels, and
+// features, 3 values per pixel each. A denoiser reads it.
 struct SampledPicture {
   std::vector<float> light, albedo, normal;
 };

@@ -203,34 +203,38 @@ TEST(ComponentsOfSequences, ReplayWhereReflectionsAndRefractionsWere) {
             replay_map.of_component[size_t(film::find_component(*replayed, "Transmission"))]);
 }
 
-// Frames that are joined follow what gives a pixel most of its light: reflections in the mirror, surfaces elsewhere.
+// Frames that are joined follow reflections in mirrors, but not in a surface that blurs them, and surfaces elsewhere.
 TEST(ComponentsOfSequences, JoinedFramesFollowWhatMirrorsShow) {
-  const auto map_of = [](uint32_t reconstruction, const char* components) {
-    Pan pan(1.0f, Scenario::Mirror);
-    const Folder folder;
-    const auto sequence = make_sequence(0, 1, folder.path());
-    for (int32_t frame = 0; frame <= 1; ++frame)
-      run(sequence->sample(pan.at(frame), settings_for(frame, reconstruction, components)).get());
-    return animation::SequenceFolder(folder.path()).load(1, animation::FrameSamples::kReplayed)->replayed;
-  };
-  const film::PixelCorrespondence joined = map_of(GRADUS_RECONSTRUCTION_REGULARIZED, nullptr).correspondence;
-  const film::ReplayMap of_components = map_of(GRADUS_RECONSTRUCTION_L2, "Reflection=ERD*L");
-  const film::PixelCorrespondence &surface = of_components.correspondence,
-                                  &reflection = of_components.of_component.at(0);
-  const auto same = [](const film::PixelCorrespondence& a, const film::PixelCorrespondence& b, size_t i) {
-    return a.pixel[i] == b.pixel[i] && glm::length(a.off_centre[i] - b.off_centre[i]) < 0.02f;
-  };
-  size_t mirrored = 0, follows = 0, direct = 0, stays = 0;
-  for (size_t i = 0; i < surface.pixel.size(); ++i) {
-    const bool parts = !same(reflection, surface, i);
-    mirrored += parts;
-    follows += parts && same(joined, reflection, i);
-    direct += !parts;
-    stays += !parts && same(joined, surface, i);
+  for (const float roughness : {0.0f, 0.07f, 0.22f}) {
+    const bool blurs = roughness * roughness > 0.02f;
+    const auto map_of = [roughness](uint32_t reconstruction, const char* components) {
+      Pan pan(1.0f, Scenario::Mirror);
+      pan.dress_last(glossy(roughness));
+      const Folder folder;
+      const auto sequence = make_sequence(0, 1, folder.path());
+      for (int32_t frame = 0; frame <= 1; ++frame)
+        run(sequence->sample(pan.at(frame), settings_for(frame, reconstruction, components)).get());
+      return animation::SequenceFolder(folder.path()).load(1, animation::FrameSamples::kReplayed)->replayed;
+    };
+    const film::PixelCorrespondence joined = map_of(GRADUS_RECONSTRUCTION_REGULARIZED, nullptr).correspondence;
+    const film::ReplayMap of_components = map_of(GRADUS_RECONSTRUCTION_L2, "Reflection=ERD*L");
+    const film::PixelCorrespondence &surface = of_components.correspondence,
+                                    &reflection = of_components.of_component.at(0);
+    const auto same = [](const film::PixelCorrespondence& a, const film::PixelCorrespondence& b, size_t i) {
+      return a.pixel[i] == b.pixel[i] && glm::length(a.off_centre[i] - b.off_centre[i]) < 0.02f;
+    };
+    size_t mirrored = 0, follows = 0, direct = 0, stays = 0;
+    for (size_t i = 0; i < surface.pixel.size(); ++i) {
+      const bool parts = !same(reflection, surface, i);
+      mirrored += parts;
+      follows += parts && same(joined, blurs ? surface : reflection, i);
+      direct += !parts;
+      stays += !parts && same(joined, surface, i);
+    }
+    EXPECT_GT(mirrored, 50u) << roughness;
+    EXPECT_GT(follows, mirrored * 9 / 10) << roughness;
+    EXPECT_GT(stays, direct * 9 / 10) << roughness;
   }
-  EXPECT_GT(mirrored, 50u);
-  EXPECT_GT(follows, mirrored * 9 / 10);
-  EXPECT_GT(stays, direct * 9 / 10);
 }
 
 TEST(ComponentsOfSequences, ReplayAlongSurfacesWhereComponentReplaysAreOff) {

@@ -57,6 +57,10 @@ class Pan {
     scene_.camera(Vec3(x, 0, 3.2f), Vec3(x, 0, 0), 0.9f);
     return scene_.context(settings_of(frame)).snapshot;
   }
+  // Gives the object that the scenario has added last another surface.
+  void dress_last(const Surface& surface) {
+    scene_.scene.dress(scene_.scene.instance_count() - 1, scene_.material(surface));
+  }
   std::shared_ptr<const scene::Snapshot> turned(float angle) {
     scene_.camera(Vec3(0, 0, 3.2f), Vec3(std::sin(angle), 0, 3.2f - std::cos(angle)), 0.9f);
     return scene_.context(settings_of(0)).snapshot;

@@ -13,6 +13,7 @@
 #include "reconstruct/regression/feature_filter.h"
 #include "reconstruct/regression/moments.h"
 #include "reconstruct/regularized.h"
+#include "reconstruct/solver_planes.h"
 #include "reconstruct/space_time/light_test.h"
 
 namespace gradus::reconstruct {
@@ -167,6 +168,12 @@ SampleWeights weigh_sample(const float* record, float ratio, float share, const 
           share * at_centre, share};
 }
 
+// Writes all channels of a field. The compiler knows their number, as this is done for 50 values of each pixel.
+template <int Channels>
+void put(const float* from, int x, int y, Field* to) {
+  for (int c = 0; c < Channels; ++c) to->row(y, c)[x] = from[c];
+}
+
 // The planes of a picture's samples, which are written pixel by pixel.
 struct PicturePlanes {
   PicturePlanes(int w, int h)
@@ -225,12 +232,6 @@ struct PicturePlanes {
   }
 
  private:
-  // Writes all channels of a field. The compiler knows their number, as this is done for 50 values of each pixel.
-  template <int Channels>
-  static void put(const float* from, int x, int y, Field* to) {
-    for (int c = 0; c < Channels; ++c) to->row(y, c)[x] = from[c];
-  }
-
   static film::FeatureImage image_of(int w, int h, uint32_t channels) {
     const size_t count = size_t(w) * size_t(h) * channels;
     return {channels, std::vector<float>(count), std::vector<float>(count)};
@@ -293,6 +294,14 @@ std::vector<MovedRow> rows_of(const std::vector<JoinedFrame>& frames, const Fram
 // Returns the weight of a sample in the means near the centre of its pixel.
 float sampled_weight(const SampleOfPixel& sample) {
   return sample.share * nearness(sample.displacement, kReachOfSampled);
+}
+
+// Adds the displacement of a sample in pixel (x, y), times that weight, to sums.
+void add_displacement(const SampleOfPixel& sample, int x, int y, Field* sums) {
+  const float weight = sampled_weight(sample);
+  const Displacement by = displaced_by(sample.displacement);
+  const std::array<float, kDisplacementChannels> values{by.x, by.y, by.xx, by.xy, by.yy};
+  for (int c = 0; c < kDisplacementChannels; ++c) sums->row(y, c)[x] += weight * values[size_t(c)];
 }
 
 // Returns pointers to the fields of noisy light and of colours of `terms`. `noisy` says which light of the picture's
@@ -374,37 +383,25 @@ PictureSamples JoinedSamples::picture(const HalvedImage& image, film::Features* 
 
 SampledPicture JoinedSamples::sampled(film::Features features, const Field& regressed) const {
   const int w = here_.width, h = here_.height;
-  SampledPicture picture{std::vector<float>(3 * here_.pixels.size()), std::move(features.albedo.values),
-                         std::move(features.normal.values)};
-  for_pieces(h, [&](int begin, int end) {
-    std::vector<RowsAround> around(kColors, RowsAround(w));
-    for (int y = begin; y < end; ++y) {
-      for (int c = 0; c < kColors; ++c) around[size_t(c)].read(regressed, y, c);
-      const std::vector<MovedRow> rows = rows_of(others_, here_, y);
-      for (int x = 0; x < w; ++x) {
-        LightSums sums;
-        Displacement displacements{};
-        sums.add(1.0f, load(here_.at(y * w + x)));
-        for (const MovedRow& row : rows) {
-          const SampleOfPixel sample = row.sample(x);
-          if (sample.record == nullptr) continue;
-          const float weight = sampled_weight(sample);
-          sums.add(weight, load(sample.record));
-          add(weight, sample.displacement, &displacements);
-        }
-        const float unit = 1.0f / sums.weight();
-        const std::array<float, kLanes> means = sums.means();
-        float* to = picture.light.data() + 3 * (size_t(y) * size_t(w) + size_t(x));
-        for (size_t c = 0; c < kColors; ++c) {
-          const float light = means[kRecordMean + c];
-          const float change =
-              GRADUS_FAULT(denoiser_reads_displaced_light) ? 0.0f : unit * around[c].change(x, displacements);
-          to[c] = std::max(light - change, std::min(light, 0.0f));
-        }
+  Field light(w, h, kColors), displacements(w, h, kDisplacementChannels);
+  for_rows(h, [&](int y) {
+    const std::vector<MovedRow> rows = rows_of(others_, here_, y);
+    for (int x = 0; x < w; ++x) {
+      LightSums sums;
+      sums.add(1.0f, load(here_.at(y * w + x)));
+      for (const MovedRow& row : rows) {
+        const SampleOfPixel sample = row.sample(x);
+        if (sample.record == nullptr) continue;
+        sums.add(sampled_weight(sample), load(sample.record));
+        add_displacement(sample, x, y, &displacements);
       }
+      const std::array<float, kLanes> means = sums.means();
+      put<kColors>(means.data() + kRecordMean, x, y, &light);
+      for (int c = 0; c < kDisplacementChannels; ++c) displacements.row(y, c)[x] /= sums.weight();
     }
   });
-  return picture;
+  if (!GRADUS_FAULT(denoiser_reads_displaced_light)) move_to_centres(regressed, displacements, &light);
+  return {interleave(light), std::move(features.albedo.values), std::move(features.normal.values)};
 }
 
 SampledTerms JoinedSamples::sampled(SampledTerms own, const std::function<SampledTerms(int number)>& read) const {
@@ -413,6 +410,7 @@ SampledTerms JoinedSamples::sampled(SampledTerms own, const std::function<Sample
   for (const HalvedImage& image : sums.light) noisy.push_back(!is_black(image.half_difference));
   const std::vector<Field*> fields = fields_of(sums, noisy);
   Field weights = make_field(here_.width, here_.height, [](int, int) { return 1.0f; });
+  Field displacements(here_.width, here_.height, kDisplacementChannels);
   for (const JoinedFrame& frame : others_) {
     const SampledTerms terms = read(frame.number);
     if (terms.light.size() != sums.light.size() || terms.colors.size() != sums.colors.size()) continue;
@@ -424,6 +422,7 @@ SampledTerms JoinedSamples::sampled(SampledTerms own, const std::function<Sample
         if (sample.record == nullptr) continue;
         const float weight = sampled_weight(sample);
         weights.row(y)[x] += weight;
+        add_displacement(sample, x, y, &displacements);
         const int from_x = sample.pixel % here_.width, from_y = sample.pixel / here_.width;
         for (size_t k = 0; k < fields.size(); ++k) {
           for (int c = 0; c < kColors; ++c) fields[k]->row(y, c)[x] += weight * others[k]->row(from_y, c)[from_x];
@@ -432,7 +431,10 @@ SampledTerms JoinedSamples::sampled(SampledTerms own, const std::function<Sample
     });
   }
   for_values(&weights, [](float& value, int, int, int) { value = 1.0f / value; });
+  scale_by(weights, &displacements);
   for (Field* field : fields) scale_by(weights, field);
+  // Colours have little noise, so that their own derivatives tell how they change.
+  for (Field& color : sums.colors) move_to_centres(Field(color), displacements, &color);
   return sums;
 }
 

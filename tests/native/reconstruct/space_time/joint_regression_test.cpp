@@ -206,8 +206,8 @@ TEST(B2_JointRegression, FiltersFeaturesByTheNoiseThatFramesShow) {
   EXPECT_LT(squares / of_one, 0.5 / kFrames);
 }
 
-// Terms such as light passes are joined as the light is, but stay where the samples lie. Those without noise stay as
-// the picture's frame has them.
+// Terms such as light passes are joined as the light is, but only colours are moved to the centres of pixels. Terms
+// without noise stay as the picture's frame has them.
 TEST(B2_JointRegression, JoinsTermsAsTheLight) {
   Shot shot;
   shot.light = [](int t) { return 1.0f + 0.01f * float(t); };
@@ -230,7 +230,8 @@ TEST(B2_JointRegression, JoinsTermsAsTheLight) {
   const reconstruct::HalvedImage own = reconstruct::read_sum(*shot.film(kMiddle)),
                                  &light = picture.sampled_terms->light[0], &constant = picture.sampled_terms->light[1];
   EXPECT_EQ(reconstruct::interleave(constant.mean), reconstruct::interleave(own.mean));
-  EXPECT_EQ(reconstruct::interleave(picture.sampled_terms->colors[0]), reconstruct::interleave(light.mean));
+  EXPECT_EQ(reconstruct::interleave(centred.sampled_terms->colors[0]),
+            reconstruct::interleave(centred.sampled_terms->light[0].mean));
   const auto rms = [](const reconstruct::Field& field) {
     return rms_difference(reconstruct::interleave(field), std::vector<float>(3 * size_t(kWidth) * kHeight));
   };
