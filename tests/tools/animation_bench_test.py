@@ -275,6 +275,13 @@ def test_earlier_measures_and_other_references_are_left_out(tmp_path: Path, monk
     assert scene.modes() == [report.DELIVERED]
 
 
+def test_a_mode_of_one_seed_is_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Regression: the report of a run that was interrupted could not be drawn."""
+    first = [row for row in rows(report.PEER, 1.0) if row["seed"] == 0]
+    ((scene,),) = stored(tmp_path, monkeypatch, first, rows(report.DELIVERED, 1.0)).values()
+    assert scene.modes() == [report.DELIVERED]
+
+
 def test_a_peer_of_another_blender_is_not_compared_with(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Regression: the newest rows of each mode counted, even if they were of different Blenders."""
     peer = [row | {"blender": "4.5"} for row in rows(report.PEER, 1.0)]
