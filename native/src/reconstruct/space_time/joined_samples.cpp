@@ -296,10 +296,9 @@ float sampled_weight(const SampleOfPixel& sample) {
   return sample.share * nearness(sample.displacement, kReachOfSampled);
 }
 
-// Adds the displacement of a sample in pixel (x, y), times that weight, to sums.
-void add_displacement(const SampleOfPixel& sample, int x, int y, Field* sums) {
-  const float weight = sampled_weight(sample);
-  const Displacement by = displaced_by(sample.displacement);
+// Adds a displacement of a sample in pixel (x, y), times its weight, to sums.
+void add_displacement(float weight, const Vec2& displacement, int x, int y, Field* sums) {
+  const Displacement by = displaced_by(displacement);
   const std::array<float, kDisplacementChannels> values{by.x, by.y, by.xx, by.xy, by.yy};
   for (int c = 0; c < kDisplacementChannels; ++c) sums->row(y, c)[x] += weight * values[size_t(c)];
 }
@@ -392,8 +391,9 @@ SampledPicture JoinedSamples::sampled(film::Features features, const Field& regr
       for (const MovedRow& row : rows) {
         const SampleOfPixel sample = row.sample(x);
         if (sample.record == nullptr) continue;
-        sums.add(sampled_weight(sample), load(sample.record));
-        add_displacement(sample, x, y, &displacements);
+        const float weight = sampled_weight(sample);
+        sums.add(weight, load(sample.record));
+        add_displacement(weight, sample.displacement, x, y, &displacements);
       }
       const std::array<float, kLanes> means = sums.means();
       put<kColors>(means.data() + kRecordMean, x, y, &light);
@@ -422,7 +422,7 @@ SampledTerms JoinedSamples::sampled(SampledTerms own, const std::function<Sample
         if (sample.record == nullptr) continue;
         const float weight = sampled_weight(sample);
         weights.row(y)[x] += weight;
-        add_displacement(sample, x, y, &displacements);
+        add_displacement(weight, sample.displacement, x, y, &displacements);
         const int from_x = sample.pixel % here_.width, from_y = sample.pixel / here_.width;
         for (size_t k = 0; k < fields.size(); ++k) {
           for (int c = 0; c < kColors; ++c) fields[k]->row(y, c)[x] += weight * others[k]->row(from_y, c)[from_x];
