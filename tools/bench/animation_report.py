@@ -111,8 +111,9 @@ def load() -> dict[Variant, list[AnimationResults]]:
         by_mode[of_row(row), row["scene"], row["mode"]].append(row)
     found: dict[Variant, dict[str, list[Row]]] = defaultdict(lambda: defaultdict(list))
     for (variant, scene, mode), rows in by_mode.items():
-        if mode in MODES and any("relmse" in row for row in newest(rows)):
-            found[variant][scene] += newest(rows)
+        last = newest(rows) if mode in MODES else []
+        if any("relmse" in row for row in last):
+            found[variant][scene] += last
     return {variant: _animations(variant, found[variant]) for variant in sorted(found)}
 
 

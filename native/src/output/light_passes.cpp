@@ -85,17 +85,6 @@ const reconstruct::Field* color_of(const film::Film& film, const film::Channel& 
   return &sampled.colors[size_t(std::find(planes.begin(), planes.end(), color) - planes.begin())];
 }
 
-// Returns the first three of `channels` interleaved channels for the pixels of `whole` that lie in `region`.
-reconstruct::Field to_field(const std::vector<float>& values, size_t channels, const Region& whole,
-                            const Region& region) {
-  reconstruct::Field field(region.width(), region.height(), 3);
-  const int x0 = region.x0 - whole.x0, y0 = region.y0 - whole.y0;
-  for_values(&field, [&](float& value, int x, int y, int c) {
-    value = values[channels * (size_t(y + y0) * size_t(whole.width()) + size_t(x + x0)) + size_t(c)];
-  });
-  return field;
-}
-
 // Returns the pixels of a field of the whole film region that lie in `region`, multiplied by `factor`.
 reconstruct::Field crop(const reconstruct::Field& field, const film::Film& film, const Region& region,
                         float factor = 1.0f) {
@@ -196,7 +185,8 @@ reconstruct::SampledTerms read_light_terms(const film::Film& film) {
   }
   if (const film::Channel* hidden = hidden_light(film)) terms.light.push_back(read_light_pass(film, *hidden));
   for (const film::Channel* color : color_planes(film))
-    terms.colors.push_back(to_field(read_color(film, *color).values, 3, film.region, film.region));
+    terms.colors.push_back(
+        reconstruct::colors_of(read_color(film, *color).values, film.region.width(), film.region.height()));
   return terms;
 }
 
@@ -204,7 +194,7 @@ bool has_light_passes(const film::Film& film) { return !splits_of(film).empty() 
 
 SplitLight split_light(const film::Film& film, const Region& region, const std::vector<float>& rgba,
                        reconstruct::SampledTerms sampled, const CancelCheck& cancel) {
-  const reconstruct::Field whole = to_field(rgba, 4, region, region);
+  const reconstruct::Field whole = reconstruct::colors_of(rgba, region.width(), region.height());
   const Guides guides(film, region, whole);
   SplitLight result;
   reconstruct::Field with_hidden;

@@ -4,6 +4,7 @@
 
 #include "base/rows.h"
 #include "base/types.h"
+#include "reconstruct/field_values.h"
 
 namespace gradus::reconstruct {
 namespace {
@@ -64,6 +65,15 @@ std::vector<float> interleave(const Field& field, int channels) {
   std::vector<float> image(size_t(field.width()) * size_t(field.height()) * size_t(channels));
   for (int c = 0; c < channels; ++c) store_channel(field, c, size_t(channels), image.data() + c);
   return image;
+}
+
+Field colors_of(const std::vector<float>& image, int width, int height) {
+  const size_t channels = image.size() / (size_t(width) * size_t(height));
+  Field colors(width, height, kColors);
+  for_values(&colors, [&](float& value, int x, int y, int c) {
+    value = image[(size_t(y) * size_t(width) + size_t(x)) * channels + size_t(c)];
+  });
+  return colors;
 }
 
 }  // namespace gradus::reconstruct

@@ -31,5 +31,7 @@ void store_channel(const Field& from, int channel, size_t stride, float* out);
 // Returns an image of the first `channels` channels, interleaved.
 std::vector<float> interleave(const Field& field, int channels);
 inline std::vector<float> interleave(const Field& field) { return interleave(field, field.channels()); }
+// Returns the colours of an interleaved image, which may have further channels.
+Field colors_of(const std::vector<float>& image, int width, int height);
 
 }  // namespace gradus::reconstruct

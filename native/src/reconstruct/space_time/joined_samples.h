@@ -31,9 +31,9 @@ class JoinedSamples {
   // the colours of the picture in the same units: light is moved to the centres by what they change up to there.
   SampledPicture sampled(film::Features features, const Field& regressed) const;
   // Returns the means of the terms of all frames with the same weights. Colours are moved as light is, by their own
-  // changes; terms of light stay where the samples lie. read(number) returns those of a frame, `own`
-  // are those of the picture's own frame. Light without noise stays as it is there. Frames that have another number of
-  // terms are left out.
+  // changes; terms of light stay where the samples lie. read(number) returns those of a frame, `own` are those of the
+  // picture's own frame. Light without noise stays as it is there. Frames that have another number of terms are left
+  // out.
   SampledTerms sampled(SampledTerms own, const std::function<SampledTerms(int number)>& read) const;
   // Joins channels [first, first + the channels of `own`) of a component, or of the sum of all, with `own`, those of
   // the picture's own frame.

@@ -6,24 +6,10 @@
 
 #include "base/error.h"
 #include "base/fault.h"
-#include "reconstruct/field_values.h"
 #include "reconstruct/regularized.h"
+#include "reconstruct/solver_planes.h"
 
 namespace gradus::reconstruct {
-namespace {
-
-// Returns the colours of an interleaved image.
-Field colors_of(const std::vector<float>& image, int width, int height) {
-  const size_t channels = image.size() / (size_t(width) * size_t(height));
-  Field colors(width, height, kColors);
-  for_values(&colors, [&](float& value, int x, int y, int c) {
-    value = image[(size_t(y) * size_t(width) + size_t(x)) * channels + size_t(c)];
-  });
-  return colors;
-}
-
-}  // namespace
-
 void JointRegression::read(int number, const CancelCheck& cancel) {
   if (frames_.count(number) > 0) return;
   FrameStep step = open_step_(number, cancel);

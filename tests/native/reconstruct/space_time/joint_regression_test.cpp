@@ -165,7 +165,7 @@ TEST(B2_JointRegression, ReturnsTheJoinedSamples) {
 }
 
 // Samples lie beside the centres of pixels by fractions that differ from frame to frame. Their mean is that of a
-// blurred picture, by 0.6 % of its light here, unless each is moved by what the picture changes.
+// blurred picture, which is wrong by 0.9 % here, unless each is moved by what the picture changes.
 TEST(B2_JointRegression, MovesTheLightOfADenoiserToTheCentresOfPixels) {
   constexpr unsigned kSeeds = 16;
   Shot shot;
