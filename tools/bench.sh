@@ -41,7 +41,10 @@ limits=(scenes modes reference seeds samples minutes)
 errors() { run stills.py "${limits[@]}" width "$@"; }
 agreement() { run agreement.py scenes width samples=REFERENCE; }
 pictures() { run pictures.py scenes; }
-speed() { run speed.py rooms width=SPEED_WIDTH repeats minutes; }
+speed() {
+  run path_tracing.py scenes width=SPEED_WIDTH seeds minutes
+  run speed.py rooms width=SPEED_WIDTH repeats minutes
+}
 reconstruct() { run reconstruction_time.py repeats; }
 animation() { run animation.py "${limits[@]}" size frames checked ${BLUR:+--blur} ${QUICK:+--quick}; }
 motion() { run motion.py "${limits[@]}" size frames measures repeats ${BLUR:+--blur} ${LOADED:+--loaded}; }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ import document  # noqa: E402
 import hosts  # noqa: E402
 import metrics  # noqa: E402
 import modes  # noqa: E402
+import path_tracing  # noqa: E402
 import records  # noqa: E402
 import results  # noqa: E402
 import rooms  # noqa: E402
@@ -344,3 +346,40 @@ def test_costs_are_ratios_within_a_repeat() -> None:
     assert found["path"].per_sample == pytest.approx({0: 1e4, 1: 2e4})
     assert found["cycles"].over(found["path"]) == pytest.approx((4.0, 4.0, 4.0))
     assert found["cycles"].total_over(found["path"])[0] < 4.0
+
+
+class FakeRenderers:
+    """Renders a gray of 0.5 with noise whose variance for one sample is 0.04 (Gradus) or 0.08, and a fixed cost."""
+
+    def __init__(self, _: scenes.Scene, size: tuple[int, int]) -> None:
+        self.size = size
+
+    def refusal(self, mode: str) -> str:
+        return "no guiding here" if mode == "cycles-guided" else ""
+
+    def render(self, mode: str, samples: int, seed: int) -> tuple[np.ndarray, dict[str, float]]:
+        variance, cost = {"path": (0.04, 1e-6), "cycles": (0.08, 4e-6)}.get(mode, (0.0, 1e-6))
+        noise = np.random.default_rng(seed).normal(scale=(variance / samples) ** 0.5, size=(*self.size[::-1], 3))
+        return 0.5 + noise, {"cpu": 3.0 + cost * samples * self.size[0] * self.size[1]}
+
+    def close(self) -> None:
+        pass
+
+
+def test_plain_paths_are_compared_by_variance_and_time_of_a_sample(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(path_tracing, "Renderers", FakeRenderers)
+    monkeypatch.setattr(path_tracing, "RESULTS", tmp_path / "path_tracing.jsonl")
+    arguments = argparse.Namespace(width=320, samples=16, seeds=3, modes=list(path_tracing.MODES))
+    for _ in range(2):
+        path_tracing.bench_scene(scenes.SCENES[0], arguments, "a", 0.0)
+    (row,) = path_tracing.load()
+    assert "no guiding here" in capsys.readouterr().out
+    assert path_tracing.middle(row, "path", "seconds") == pytest.approx(1e-6)
+    assert path_tracing.middle(row, "path", "variance") == pytest.approx(0.04 / 0.251, rel=0.02)
+    found = path_tracing.ratios(row, "cycles")
+    assert found is not None
+    assert found["seconds"] == pytest.approx(0.25)
+    assert found["work"] == pytest.approx(0.125, rel=0.02)
+    assert path_tracing.ratios(row, "cycles-guided") is None

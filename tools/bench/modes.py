@@ -57,6 +57,7 @@ MODES = {
     "auto": Mode("Gradus AUTO without its denoiser", GRADUS, _gradus("AUTO", "AUTO")),
     "auto-l2": Mode("Gradus AUTO + L2", GRADUS, _gradus("AUTO", "L2")),
     "cycles": Mode("Cycles", CYCLES, _CYCLES_PLAIN),
+    "cycles-guided": Mode("Cycles with path guiding", CYCLES, _CYCLES_PLAIN | {"use_guiding": True}),
     "cycles-denoised": Mode("Cycles + denoiser", CYCLES, _CYCLES_PLAIN | _CYCLES_DENOISER),
     "cycles-shipped": Mode("Cycles as shipped", CYCLES),
     "mitsuba": Mode("Mitsuba PT", MITSUBA),

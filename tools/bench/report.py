@@ -16,6 +16,7 @@ import host
 import maps
 import motion_report
 import numpy as np
+import path_tracing
 import pictures
 import records
 import results
@@ -28,7 +29,7 @@ from results import Point, SceneResults
 from rooms import ENGINES, PILOT, ROOMS
 
 TITLE = "Gradus: error against CPU time"
-OTHERS = [mode for mode in MODES if mode not in ("path", "gradient-none")]
+OTHERS = [mode for mode in MODES if mode not in ("path", "gradient-none", "cycles-guided")]
 SLOPES = {"PT": "path", "L2": "gradient-l2", "REGULARIZED": "path-regularized"}
 PREFACE = f"""# {TITLE}
 
@@ -72,6 +73,25 @@ def sample_costs(scenes: list[SceneResults]) -> list[Block]:
         if any(cell is not None for cell in cells):
             made.rows.append([scene.name, *map(number, cells), number(scene.denoiser_cost(), ".0f")])
     return [Text("## CPU time of a sample with four bounces"), made] if made.rows else []
+
+
+def plain_paths() -> list[Block]:
+    """Table of the variance and the time of a sample in scenes, over those of Cycles."""
+    rows = path_tracing.newest()
+    heads = ["scene", "time", "variance", "variance-t", "time × variance-t", "the same, Cycles guided", "PT, µs"]
+    made = Table(heads)
+    for row in rows:
+        plain, guided = (path_tracing.ratios(row, peer) or {} for peer in ("cycles", "cycles-guided"))
+        cells = [number(plain.get(name)) for name in (*path_tracing.MEASURES, "work")]
+        microseconds = 1e6 * path_tracing.middle(row, path_tracing.OURS, "seconds")
+        made.rows.append([row["scene"], *cells, number(guided.get("work")), number(microseconds)])
+    if not rows:
+        return []
+    last = rows[-1]
+    about = f"{last['samples']} samples, {last['width']} pixels wide, {last['seeds']} seeds; "
+    about += f"commit {last['version']}, Blender {last['blender']}, {last['machine']}"
+    meaning = "Gradus over Cycles for each sample; variance-t leaves out the worst 0.1 % of the pixels."
+    return [Text(f"## Plain paths: variance and time of a sample\n\n{meaning} {about}."), made]
 
 
 def rooms() -> list[Block]:
@@ -250,7 +270,7 @@ def blocks() -> list[Block]:
     made: list[Block] = [Text(PREFACE), *overview(scenes), Text("## Targets"), targets.table(scenes)]
     made += [*equal_time(scenes), *shortfalls(scenes)] if scenes else []
     made += [*animation_report.blocks(), *motion_report.blocks()]
-    made += [*rooms(), *sample_costs(scenes), *agreements(), *export_and_upload()]
+    made += [*plain_paths(), *rooms(), *sample_costs(scenes), *agreements(), *export_and_upload()]
     for scene in scenes:
         made += details(scene)
     return made

@@ -29,7 +29,7 @@ from scenes import QUICK, Scene, select
 from seeds import SeedSum
 from version import conditions
 
-ERROR_MODES = [name for name in MODES if name != "gradient-none"]
+ERROR_MODES = [name for name in MODES if name not in ("gradient-none", "cycles-guided")]
 SPEED_MODES = ("path", "gradient-none", "cycles")
 SPEED_SAMPLES, SPEED_BOUNCES = (4, 32), 4
 
