@@ -291,8 +291,10 @@ std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHead
   if (follows_before()) {
     const ScopedTimer timer(&record_.stats.seconds.correspondence, &record_.stats.cpu_seconds.correspondence);
     tbb::task_arena(arena_size(input_.threads)).execute([&] {
-      replay->replay_map = make_replay_map(*before, *input_.snapshot, now, record_.plan.components, fresh,
-                                           [this] { return is_stopped(); });
+      const CancelCheck cancel = [this] { return is_stopped(); };
+      centres_ = std::make_shared<const motion::CentreView>(
+          motion::view_centres(*input_.snapshot, now.width, now.height, fresh.region, cancel));
+      replay->replay_map = make_replay_map(*before, *centres_, now, record_.plan.components, fresh, cancel);
       check_cancelled();
     });
   }
@@ -319,6 +321,7 @@ std::shared_ptr<const render::Replay> FrameSampling::follow(const film::FilmHead
 void FrameSampling::finish(const film::FilmHeader& fresh, std::vector<uint32_t> counts) {
   auto before = make_previous_frame(input_.snapshot, input_.settings, &fresh);
   before->counts = std::move(counts);
+  before->centres = std::move(centres_);
   if (!has_enough(fresh, FrameSamples::kFresh)) before->sampled.reset();  // no other frame may share its samples
   sequence_->before_ = std::move(before);
   record_.stats.total_seconds = seconds();

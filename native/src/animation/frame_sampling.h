@@ -75,9 +75,10 @@ class FrameSampling final : public render::RenderTask {
   std::optional<film::FilmHeader> stored_fresh_, stored_replayed_;  // without a value: there are none that can be used
   render::RenderLoop fresh_;
   std::unique_ptr<render::RenderLoop> replayed_;
-  double resumed_mean_ = 0.0;                       // stored fresh samples per pixel, to which new ones are added
-  mutable std::mutex reading_;                      // is held while a stored film is read, so that it is read once
-  mutable std::shared_ptr<const film::Film> film_;  // fresh samples; if stored, they are read on first use
+  std::shared_ptr<const motion::CentreView> centres_;  // view of the snapshot, if the frame before is followed
+  double resumed_mean_ = 0.0;                          // stored fresh samples per pixel, to which new ones are added
+  mutable std::mutex reading_;                         // is held while a stored film is read, so that it is read once
+  mutable std::shared_ptr<const film::Film> film_;     // fresh samples; if stored, they are read on first use
   FrameRecord record_;
 };
 

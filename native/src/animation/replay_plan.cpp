@@ -87,21 +87,21 @@ film::PixelCorrespondence correspondence_of_dominant(const motion::CentreView& f
 
 }  // namespace
 
-film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapshot& now, const GradusSettings& settings,
-                                const lpe::ComponentSet& components, const film::FilmHeader& fresh,
-                                const CancelCheck& cancel) {
-  const auto view = [&](const scene::Snapshot& snapshot) {
-    return motion::view_centres(snapshot, settings.width, settings.height, fresh.region, cancel);
-  };
-  const motion::CentreView from = view(*before.snapshot), to = view(now);
+film::ReplayMap make_replay_map(const PreviousFrame& before, const motion::CentreView& now,
+                                const GradusSettings& settings, const lpe::ComponentSet& components,
+                                const film::FilmHeader& fresh, const CancelCheck& cancel) {
+  motion::CentreView traced;
+  const bool is_known = before.centres && before.centres->region == now.region;
+  if (!is_known) traced = motion::view_centres(*before.snapshot, settings.width, settings.height, now.region, cancel);
   if (cancel()) return {};
+  const motion::CentreView& from = is_known ? *before.centres : traced;
   const scene::Snapshot& scene = *before.snapshot;
   const bool shares =
       integrator::shares_jitter(camera::Camera(scene.camera, settings.width, settings.height), scene, fresh.gradients);
-  film::PixelCorrespondence correspondence = motion::match_pixels(from, to);
+  film::PixelCorrespondence correspondence = motion::match_pixels(from, now);
   if (!takes_replays(settings)) {
-    correspondence = correspondence_of_dominant(from, to, settings, std::move(correspondence), cancel);
-    if (!cancel()) motion::leave_out_parting_edges(from, to, &correspondence);
+    correspondence = correspondence_of_dominant(from, now, settings, std::move(correspondence), cancel);
+    if (!cancel()) motion::leave_out_parting_edges(from, now, &correspondence);
   }
   film::ReplayMap replay_map{before.stream_frame,
                              motion::inverse_correspondence(correspondence),
@@ -110,7 +110,7 @@ film::ReplayMap make_replay_map(const PreviousFrame& before, const scene::Snapsh
                              shares,
                              before.net_samples};
   replay_map.of_component =
-      correspondences_of_components(from, to, settings, components, correspondence, replay_map.correspondence, cancel);
+      correspondences_of_components(from, now, settings, components, correspondence, replay_map.correspondence, cancel);
   render::limit_component_replays(&replay_map);
   return replay_map;
 }

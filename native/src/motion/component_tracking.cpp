@@ -36,7 +36,8 @@ void append(const ChainMotion& rows, ChainMotion* motion) {
 }
 
 std::vector<ChainMotion> track(const CentreView& from, const ChainTracer& to, const lpe::ComponentSet& components,
-                               uint32_t wanted, float non_specular_above, const CancelCheck& is_cancelled) {
+                               uint32_t wanted, float non_specular_above, SearchSteps steps,
+                               const CancelCheck& is_cancelled) {
   Change change(*from.snapshot);
   change.add(to.snapshot());
   const Region& film = from.region;
@@ -49,7 +50,7 @@ std::vector<ChainMotion> track(const CentreView& from, const ChainTracer& to, co
         view_chains(rows, to.settings(), components, wanted, is_cancelled, &change, non_specular_above);
     for (size_t k = 0; k < views.size(); ++k) {
       exclude_directly_seen(&views[k]);
-      append(track_chains(views[k], to, band, is_cancelled), &motion[k]);
+      append(track_chains(views[k], to, band, is_cancelled, nullptr, steps), &motion[k]);
     }
   }
   return motion;
@@ -66,12 +67,14 @@ bool is_at_edge(const CentreView& view, size_t pixel) {
 std::vector<ChainMotion> track_components(const CentreView& from, const ChainTracer& to,
                                           const lpe::ComponentSet& components, uint32_t wanted,
                                           const CancelCheck& is_cancelled) {
-  return track(from, to, components, wanted, 0.0f, is_cancelled);
+  return track(from, to, components, wanted, 0.0f, SearchSteps::Several, is_cancelled);
 }
 
 ChainMotion track_dominant(const CentreView& from, const ChainTracer& to, const CancelCheck& is_cancelled) {
   const lpe::ComponentSet whole_picture;
-  return std::move(track(from, to, whole_picture, whole_picture.all(), bsdf::kMaxNonSpecular, is_cancelled).front());
+  return std::move(
+      track(from, to, whole_picture, whole_picture.all(), bsdf::kMaxNonSpecular, SearchSteps::One, is_cancelled)
+          .front());
 }
 
 bool is_seen_through_smooth(const ChainMotion& motion) {

@@ -15,8 +15,8 @@ std::vector<ChainMotion> track_components(const CentreView& from, const ChainTra
                                           const lpe::ComponentSet& components, uint32_t wanted,
                                           const CancelCheck& is_cancelled);
 // Returns the motion of what each pixel of `from` mainly shows, as far as the probabilities of scattering classes tell:
-// it is seen through mirrors and clear glass (kMaxNonSpecular), by the stronger of reflection and transmission.
-// Tracking is NoPath elsewhere.
+// it is seen through mirrors and clear glass (kMaxNonSpecular), by the stronger of reflection and transmission, and
+// found in one step in time. Tracking is NoPath elsewhere.
 ChainMotion track_dominant(const CentreView& from, const ChainTracer& to, const CancelCheck& is_cancelled);
 // Whether the component is seen through smooth surfaces in some pixel.
 bool is_seen_through_smooth(const ChainMotion& motion);

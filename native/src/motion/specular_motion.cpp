@@ -43,13 +43,15 @@ struct Neighbours {
 class ChainTracker {
  public:
   // known: motion of another view over the same part, or nullptr.
-  ChainTracker(const ChainView& from, const ChainTracer& to, const Region& part, const KnownMotion* known)
+  ChainTracker(const ChainView& from, const ChainTracer& to, const Region& part, const KnownMotion* known,
+               SearchSteps steps)
       : from_(from),
         here_(from.tracer()),
         to_(to),
         motion_(here_.snapshot(), to.snapshot()),
         part_(part),
-        known_(known) {}
+        known_(known),
+        steps_(steps) {}
 
   // Returns the chain of a pixel in the first frame, or nullptr.
   const SpecularChain* chain(int32_t x, int32_t y) const { return from_.at(x, y); }
@@ -120,8 +122,8 @@ class ChainTracker {
     return to_.meets(chain, distance) && to_.finish(chain, &hit) && hit.t < distance;
   }
 
-  // Searches for the target through smooth surfaces: in one step in time from several estimates in turn, then in
-  // smaller steps.
+  // Searches for the target through smooth surfaces: in one step in time from several estimates in turn, then, if
+  // wanted, in smaller steps.
   void search(const Target& target, int32_t x, int32_t y, const Neighbours& before, Track* track,
               TrackingCounts* counts) const {
     const SpecularChain& chain = *track->chain;
@@ -147,7 +149,7 @@ class ChainTracker {
     // The motion of the neighbours may belong to another image of the target.
     bool is_open = !guess || attempt(newton.leap(start, *guess, &found)) || track->tracking == Tracking::Broken;
     if (is_open && is_there) is_open = attempt(newton.leap(start, first, &found));
-    if (is_open) attempt(newton.march(start, &found));
+    if (is_open && steps_ == SearchSteps::Several) attempt(newton.march(start, &found));
     if (track->tracking != Tracking::Tracked) return;
     counts->search.traced += searched.traced;
     counts->search.space += searched.space;
@@ -200,6 +202,7 @@ class ChainTracker {
   SnapshotMotion motion_;
   const Region& part_;
   const KnownMotion* known_;
+  SearchSteps steps_;
 };
 
 }  // namespace
@@ -255,7 +258,7 @@ class Tile {
 }  // namespace
 
 ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Region& part,
-                         const CancelCheck& is_cancelled, const KnownMotion* known) {
+                         const CancelCheck& is_cancelled, const KnownMotion* known, SearchSteps steps) {
   const auto pixels = size_t(part.area());
   ChainMotion motion{{}, std::vector<Tracking>(pixels, Tracking::NotConverged), {}};
   motion.film.reserve(pixels);
@@ -266,7 +269,7 @@ ChainMotion track_chains(const ChainView& from, const ChainTracer& to, const Reg
     motion.counts.pixels[size_t(-int(Tracking::ShotChange))] = pixels;
     return motion;
   }
-  const ChainTracker tracker(from, to, part, known);
+  const ChainTracker tracker(from, to, part, known, steps);
   tbb::enumerable_thread_specific<TrackingCounts> counts;
   const auto tiles = [](int32_t length) { return (length + kTile - 1) / kTile; };
   tbb::parallel_for(tbb::blocked_range2d<int32_t>(0, tiles(part.height()), 1, 0, tiles(part.width()), 1),

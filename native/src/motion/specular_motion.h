@@ -33,10 +33,14 @@ struct KnownMotion {
 };
 // Number of film rows that are tracked together. The chains of all pixels would take more memory than a frame.
 inline constexpr int32_t kTrackingBand = 64;
+// Whether a search that fails in one step in time is repeated in smaller ones. That finds the motion of few more pixels
+// (up to 0.5 % where what the camera passes is full of edges), and takes up to three times as many rays.
+enum class SearchSteps : uint8_t { One, Several };
 // Returns the motion of a part of the view `from` to the frame of `to`, which may have another time and another camera.
 // After cancelling, pixels are NotConverged. known: motion of another view, or nullptr.
 ChainMotion track_chains(
     const ChainView& from, const ChainTracer& to, const Region& part,
-    const CancelCheck& is_cancelled = [] { return false; }, const KnownMotion* known = nullptr);
+    const CancelCheck& is_cancelled = [] { return false; }, const KnownMotion* known = nullptr,
+    SearchSteps steps = SearchSteps::Several);
 
 }  // namespace gradus::motion
