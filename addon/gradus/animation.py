@@ -133,7 +133,9 @@ class Animation:
 
     def _create(self, job: Any, view: str, folder: str) -> int:
         settings = native.SequenceSettings(first=self.frames.first, last=self.frames.last, step=self.frames.step)
-        settings.window_size, settings.window_overlap = job.host_value("window_size"), job.host_value("window_overlap")
+        settings.window_size = job.host_value("window_size")
+        # Only half of a window can overlap. A smaller window would otherwise fail with the default overlap.
+        settings.window_overlap = min(job.host_value("window_overlap"), settings.window_size // 2)
         settings.with_flow = int(passes.needs_next_frame(job.requested_passes()))
         if folder:
             self._folders.append(frame_store.folder_of(folder, job.scene.name, job.layer.name, view))

@@ -204,7 +204,8 @@ int reconstruct_sequence(const ReconstructArguments& args) {
   Remarks remarks;
   if (!unrelated.empty())
     remarks.warnings.insert("frames " + unrelated +
-                            " replay others than those before them: there is no pixel correspondence between them");
+                            " follow another scene or seed than that of the stored frames before them, and are not "
+                            "joined with these");
   for (const std::vector<int32_t>& chain : chains)
     write_chain({args, stored, device, of_files, wanted, missing_denoiser(place)}, chain, &remarks);
   for (const std::string& text : remarks.warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());

@@ -101,6 +101,15 @@ def test_c2_without_temporal_all_frames_are_stills(
     assert plan["frame_by_frame"] == "temporal is off"
 
 
+def test_a_small_window_limits_its_overlap(moving: bpy.types.Scene, tmp_path: Path) -> None:
+    """Regression: windows of less than ten frames ended in an error, unless the overlap was lowered, too."""
+    moving.frame_end = 4
+    for size in (2, 3, 9):
+        moving.gradus.window_size = size
+        animate(moving, tmp_path / str(size))
+        assert frames_in(tmp_path / str(size)) == [1, 2, 3, 4]
+
+
 def test_differences_over_time_follow_the_surface(moving: bpy.types.Scene, tmp_path: Path) -> None:
     moving.frame_end = 3
     animate(moving, tmp_path)

@@ -11,6 +11,7 @@
 #include "film/catcher_channels.h"
 #include "film/features.h"
 #include "film/region_pixels.h"
+#include "output/certain_alpha.h"
 #include "output/denoise_combined.h"
 #include "output/light_passes.h"
 #include "output/pass_read.h"
@@ -34,15 +35,27 @@ auto value_of(const film::Film& film, bool keeps_negative, const std::vector<flo
   };
 }
 
+// Returns a function of a pixel that gives the alpha of a reconstructed image as it is delivered.
+auto alpha_of(const film::Film& film, const std::vector<float>& image) {
+  const bool has_alpha = film.color_channels == 4;
+  std::vector<CertainAlpha> certain;
+  if (has_alpha) certain = find_certain_alpha(film);
+  return [&image, has_alpha, certain = std::move(certain)](size_t i) {
+    if (!has_alpha) return 1.0f;
+    if (certain.empty() || certain[i] == CertainAlpha::None) return std::clamp(image[4 * i + 3], 0.0f, 1.0f);
+    return certain[i] == CertainAlpha::Opaque ? 1.0f : 0.0f;
+  };
+}
+
 // Returns RGBA of `region`. `image` is the reconstructed picture of the whole film region.
 std::vector<float> crop_picture(const film::Film& film, bool keeps_negative, const std::vector<float>& image,
                                 const Region& region) {
   std::vector<float> rgba(size_t(region.area()) * 4);
-  const auto channels = size_t(film.color_channels);
   const auto of_pixel = value_of(film, keeps_negative, image);
+  const auto alpha = alpha_of(film, image);
   for_pixels(film, region, [&](size_t i, size_t out) {
     for (size_t c = 0; c < 3; ++c) rgba[4 * out + c] = of_pixel(i, c);
-    rgba[4 * out + 3] = channels == 4 ? std::clamp(image[4 * i + 3], 0.0f, 1.0f) : 1.0f;
+    rgba[4 * out + 3] = alpha(i);
   });
   show_shadow_catchers(film, region, rgba.data());
   return rgba;
