@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs a part of the benchmark and writes the report. Everything goes to out/bench.
 #
-# usage: bench.sh all | errors | quick | agreement | pictures | speed | reconstruct | animation | motion | host |
+# usage: bench.sh all | errors | quick | agreement | pictures | speed | paths | reconstruct | animation | motion | host |
 #                 designs | animated-designs | compare | report
 #
 # Variables of the environment limit a part; `make help` says which part reads which:
@@ -41,10 +41,8 @@ limits=(scenes modes reference seeds samples minutes)
 errors() { run stills.py "${limits[@]}" width "$@"; }
 agreement() { run agreement.py scenes width samples=REFERENCE; }
 pictures() { run pictures.py scenes; }
-speed() {
-  run path_tracing.py scenes width=SPEED_WIDTH seeds minutes
-  run speed.py rooms width=SPEED_WIDTH repeats minutes
-}
+paths() { run path_tracing.py scenes width=SPEED_WIDTH minutes; }
+speed() { run speed.py rooms width=SPEED_WIDTH repeats minutes; }
 reconstruct() { run reconstruction_time.py repeats; }
 animation() { run animation.py "${limits[@]}" size frames checked ${BLUR:+--blur} ${QUICK:+--quick}; }
 motion() { run motion.py "${limits[@]}" size frames measures repeats ${BLUR:+--blur} ${LOADED:+--loaded}; }
@@ -56,6 +54,7 @@ case $part in
     run host.py
     reconstruct
     speed
+    paths
     errors
     animation
     MODES='' motion # it has modes of its own
@@ -64,7 +63,7 @@ case $part in
     report
     exit "${differs:-0}"
     ;;
-  errors | agreement | pictures | speed | reconstruct | animation | motion) set_up; "$part"; report ;;
+  errors | agreement | pictures | speed | paths | reconstruct | animation | motion) set_up; "$part"; report ;;
   quick) set_up; errors --quick; report ;;
   host) set_up blender; run host.py; report ;;
   animated-designs)

@@ -134,7 +134,7 @@ class Animation:
     def _create(self, job: Any, view: str, folder: str) -> int:
         settings = native.SequenceSettings(first=self.frames.first, last=self.frames.last, step=self.frames.step)
         settings.window_size = job.host_value("window_size")
-        # Only half of a window can overlap. A smaller window would otherwise fail with the default overlap.
+        # The library refuses windows that overlap by more than half, as those of less than ten frames would by default.
         settings.window_overlap = min(job.host_value("window_overlap"), settings.window_size // 2)
         settings.with_flow = int(passes.needs_next_frame(job.requested_passes()))
         if folder:

@@ -509,9 +509,9 @@ ROWS: tuple[dict[str, Any], ...] = (
         default=5,
         label="Overlap",
         doc=(
-            "Frames that a window shares with the next one; half of it if this is more. More make the change from "
-            "window to window smoother. With L2 and L1 they cost as many reconstructions more; with Regularized, "
-            "frames near the end of a window are made from more frames"
+            "Frames that a window shares with the next one. Values above half of the window count as half. More "
+            "make the change from window to window smoother. With L2 and L1 they cost as many reconstructions more;"
+            " with Regularized, frames near the end of a window are made from more frames"
         ),
         minimum=1,
         maximum=50,

@@ -204,8 +204,8 @@ int reconstruct_sequence(const ReconstructArguments& args) {
   Remarks remarks;
   if (!unrelated.empty())
     remarks.warnings.insert("frames " + unrelated +
-                            " follow another scene or seed than that of the stored frames before them, and are not "
-                            "joined with these");
+                            " follow another scene or seed than that of the stored frames before them: they are not "
+                            "joined with those");
   for (const std::vector<int32_t>& chain : chains)
     write_chain({args, stored, device, of_files, wanted, missing_denoiser(place)}, chain, &remarks);
   for (const std::string& text : remarks.warnings) std::fprintf(stderr, "warning: %s\n", text.c_str());

@@ -376,10 +376,25 @@ def test_plain_paths_are_compared_by_variance_and_time_of_a_sample(
         path_tracing.bench_scene(scenes.SCENES[0], arguments, "a", 0.0)
     (row,) = path_tracing.load()
     assert "no guiding here" in capsys.readouterr().out
-    assert path_tracing.middle(row, "path", "seconds") == pytest.approx(1e-6)
-    assert path_tracing.middle(row, "path", "variance") == pytest.approx(0.04 / 0.251, rel=0.02)
+    assert path_tracing.median_of(row, "path", "seconds") == pytest.approx(1e-6)
+    assert path_tracing.median_of(row, "path", "variance") == pytest.approx(0.04 / 0.251, rel=0.02)
     found = path_tracing.ratios(row, "cycles")
     assert found is not None
     assert found["seconds"] == pytest.approx(0.25)
     assert found["work"] == pytest.approx(0.125, rel=0.02)
     assert path_tracing.ratios(row, "cycles-guided") is None
+    table = report_module().plain_paths()[1]
+    assert table.rows[0][0] == "hero"
+    assert table.rows[0][1] == "0.25"
+    assert table.rows[0][5:] == ["–", "1.00"]
+
+
+def test_plain_paths_of_other_conditions_are_not_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(path_tracing, "RESULTS", tmp_path / "path_tracing.jsonl")
+    assert path_tracing.newest() == []
+    values = {name: [1.0] for name in path_tracing.MEASURES}
+    setup = {"width": 640, "samples": 16, "seeds": 2, "blender": "5.2", "machine": "m"}
+    for scene, version, mode in (("a", "1", "path"), ("b", "2", "path"), ("c", "2", "cycles"), ("c", "2", "path")):
+        row = setup | {"scene": scene, "version": version, "modes": {mode: values}}
+        records.append(row, path_tracing.RESULTS)
+    assert [row["scene"] for row in path_tracing.newest()] == ["b", "c"]

@@ -69,6 +69,9 @@ REFERENCES = {GRADUS: "path", CYCLES: "cycles", MITSUBA: "mitsuba"}
 # The pass Error estimates the error of the delivered image. It is compared with the true error of these modes.
 ESTIMATES_ERROR = {name for name, mode in MODES.items() if mode.settings.get("denoiser") == "NONE"}
 
+# Modes of the measures of speed alone.
+WITHOUT_ERRORS = ("gradient-none", "cycles-guided")
+
 _CYCLES_SETTINGS = {name for mode in MODES.values() if mode.engine == CYCLES for name in mode.settings}
 
 

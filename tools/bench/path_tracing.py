@@ -1,6 +1,6 @@
 """Measures the variance of a sample and its CPU time by plain path tracing: Gradus against Cycles, without denoisers.
 
-    path_tracing.py [--scenes a,b] [--modes path,cycles] [--width 640] [--samples 16] [--seeds 3] [--minutes 60]
+    path_tracing.py [--scenes a,b] [--modes path,cycles] [--width 640] [--samples 16] [--seeds 3] [--minutes 600]
 
 Variance needs no reference: half the squared difference of two seeds has it as its expectation. It is divided by the
 squared level of the picture, a smooth picture by Gradus, and compared at the same number of samples. The time of a
@@ -28,6 +28,7 @@ RESULTS = records.file_of("path_tracing")
 OURS = "path"
 MODES = (OURS, "cycles", "cycles-guided")
 LEVEL, LEVEL_SAMPLES, LEVEL_SEED = "path-regularized", 8, 3000
+SETUP = ("width", "samples", "seeds", "version", "blender", "machine")  # columns in which rows must agree
 MEASURES = ("seconds", "variance", "variance_trimmed")  # of a sample
 
 
@@ -71,7 +72,7 @@ def bench_scene(scene: Scene, arguments: argparse.Namespace, version: str, _: fl
     row = setup | {"tried": arguments.modes, "modes": measure(scene, arguments)}
     records.append(row, RESULTS)
     for mode in row["modes"]:
-        values = " ".join(f"{name} {middle(row, mode, name):.3g}" for name in MEASURES)
+        values = " ".join(f"{name} {median_of(row, mode, name):.3g}" for name in MEASURES)
         print(f"{scene.name:18} {mode:14} {values}", flush=True)
 
 
@@ -80,23 +81,32 @@ def load() -> list[Row]:
 
 
 def newest() -> list[Row]:
-    """Returns the last row of each scene."""
-    return list({row["scene"]: row for row in load()}.values())
+    """Returns the last row of each scene, of those that were measured like the last one of all and have Gradus."""
+    rows = [row for row in load() if OURS in row["modes"]]
+    alike = [row for row in rows if all(row[name] == rows[-1][name] for name in SETUP)]
+    return list({row["scene"]: row for row in alike}.values())
 
 
-def middle(row: Row, mode: str, measure: str) -> float:
-    return statistics.median(row["modes"][mode][measure])
+def median_of(row: Row, mode: str, name: str) -> float:
+    """Returns the median of a measure over the seeds or the pairs of seeds."""
+    return statistics.median(row["modes"][mode][name])
+
+
+def median_ratio(row: Row, peer: str, name: str) -> float:
+    """Returns the median of the ratios to a peer within each seed or pair of seeds, which the machine's pace leaves."""
+    pairs = zip(row["modes"][OURS][name], row["modes"][peer][name], strict=True)
+    return statistics.median(ours / theirs for ours, theirs in pairs)
 
 
 def ratios(row: Row, peer: str) -> dict[str, float] | None:
     """Returns the measures of Gradus over those of a peer, and `work`, the product of time and trimmed variance."""
     if not {OURS, peer} <= row["modes"].keys():
         return None
-    found = {name: middle(row, OURS, name) / middle(row, peer, name) for name in MEASURES}
+    found = {name: median_ratio(row, peer, name) for name in MEASURES}
     return found | {"work": found["seconds"] * found["variance_trimmed"]}
 
 
-def several(text: str) -> int:
+def seeds_of(text: str) -> int:
     """Converts a number of seeds; variance needs two."""
     if int(text) < 2:
         raise argparse.ArgumentTypeError("at least two seeds are needed")
@@ -115,7 +125,7 @@ def main() -> None:
     parser = parser_of(__doc__)
     parser.add_argument("--width", type=int, default=640)
     parser.add_argument("--samples", type=samples_of, default=16)
-    parser.add_argument("--seeds", type=several, default=3)
+    parser.add_argument("--seeds", type=seeds_of, default=3)
     parser.add_argument("--modes", type=names_of(MODES), default=list(MODES))
     arguments = parser.parse_args()
     bench_each(select(arguments.scenes), bench_scene, arguments)

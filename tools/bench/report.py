@@ -23,13 +23,13 @@ import results
 import speed
 import targets
 from document import Block, Figure, HtmlOnly, Table, Text, number, spread, to_html, to_markdown
-from modes import MODES
+from modes import MODES, WITHOUT_ERRORS
 from paths import HERE, OUT
 from results import Point, SceneResults
 from rooms import ENGINES, PILOT, ROOMS
 
 TITLE = "Gradus: error against CPU time"
-OTHERS = [mode for mode in MODES if mode not in ("path", "gradient-none", "cycles-guided")]
+OTHERS = [mode for mode in MODES if mode not in ("path", *WITHOUT_ERRORS)]
 SLOPES = {"PT": "path", "L2": "gradient-l2", "REGULARIZED": "path-regularized"}
 PREFACE = f"""# {TITLE}
 
@@ -78,15 +78,15 @@ def sample_costs(scenes: list[SceneResults]) -> list[Block]:
 def plain_paths() -> list[Block]:
     """Table of the variance and the time of a sample in scenes, over those of Cycles."""
     rows = path_tracing.newest()
+    if not rows:
+        return []
     heads = ["scene", "time", "variance", "variance-t", "time × variance-t", "the same, Cycles guided", "PT, µs"]
     made = Table(heads)
     for row in rows:
         plain, guided = (path_tracing.ratios(row, peer) or {} for peer in ("cycles", "cycles-guided"))
         cells = [number(plain.get(name)) for name in (*path_tracing.MEASURES, "work")]
-        microseconds = 1e6 * path_tracing.middle(row, path_tracing.OURS, "seconds")
+        microseconds = 1e6 * path_tracing.median_of(row, path_tracing.OURS, "seconds")
         made.rows.append([row["scene"], *cells, number(guided.get("work")), number(microseconds)])
-    if not rows:
-        return []
     last = rows[-1]
     about = f"{last['samples']} samples, {last['width']} pixels wide, {last['seeds']} seeds; "
     about += f"commit {last['version']}, Blender {last['blender']}, {last['machine']}"

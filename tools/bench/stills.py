@@ -20,7 +20,7 @@ import numpy as np
 import records
 from agreement import SHARE, share_and_ratio
 from metrics import all_errors, relative_to
-from modes import ESTIMATES_ERROR, MITSUBA, MODES, REFERENCES
+from modes import ESTIMATES_ERROR, MITSUBA, MODES, REFERENCES, WITHOUT_ERRORS
 from references import reference
 from renderers import Renderers
 from results import STILLS
@@ -29,7 +29,7 @@ from scenes import QUICK, Scene, select
 from seeds import SeedSum
 from version import conditions
 
-ERROR_MODES = [name for name in MODES if name not in ("gradient-none", "cycles-guided")]
+ERROR_MODES = [name for name in MODES if name not in WITHOUT_ERRORS]
 SPEED_MODES = ("path", "gradient-none", "cycles")
 SPEED_SAMPLES, SPEED_BOUNCES = (4, 32), 4
 

@@ -43,7 +43,8 @@ struct PreviousFrame {
   uint32_t net_samples = 0;       // of the film of the fresh samples, if samples are replayed
   std::vector<uint32_t> counts;   // samples of each pixel; empty: as many as in the settings, or not known
   std::optional<Region> sampled;  // region of the fresh samples; without a value: the frame was not sampled
-  std::shared_ptr<const motion::CentreView> centres;  // view of the snapshot; null if it was not needed so far
+  // View of `snapshot`, to which it points, in 36 bytes a pixel; null if the frame followed no other.
+  std::shared_ptr<const motion::CentreView> centres;
 };
 // fresh: header of the fresh samples, or nullptr if the frame was not sampled.
 std::unique_ptr<PreviousFrame> make_previous_frame(std::shared_ptr<const scene::Snapshot> snapshot,

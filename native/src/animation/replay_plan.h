@@ -20,7 +20,8 @@ bool follows(const PreviousFrame* before, const scene::Snapshot& now, const Grad
 // show the same point. If frames are joined and nothing is replayed, all light of a pixel follows what it mainly shows:
 // the point that is seen in a mirror or clear glass, and other surfaces themselves; and pixels that lie at an edge in
 // one of both frames alone have none (motion/parting_edges.h). The map is empty after cancelling.
-// now: view of the frame's snapshot over the region of `fresh`.
+// now: view of the frame's snapshot over the region of `fresh`. The view that `before` keeps is used if it has the same
+// region.
 film::ReplayMap make_replay_map(const PreviousFrame& before, const motion::CentreView& now,
                                 const GradusSettings& settings, const lpe::ComponentSet& components,
                                 const film::FilmHeader& fresh, const CancelCheck& cancel);

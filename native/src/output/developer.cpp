@@ -11,7 +11,7 @@
 #include "film/catcher_channels.h"
 #include "film/features.h"
 #include "film/region_pixels.h"
-#include "output/certain_alpha.h"
+#include "output/alpha_bounds.h"
 #include "output/denoise_combined.h"
 #include "output/light_passes.h"
 #include "output/pass_read.h"
@@ -38,12 +38,10 @@ auto value_of(const film::Film& film, bool keeps_negative, const std::vector<flo
 // Returns a function of a pixel that gives the alpha of a reconstructed image as it is delivered.
 auto alpha_of(const film::Film& film, const std::vector<float>& image) {
   const bool has_alpha = film.color_channels == 4;
-  std::vector<CertainAlpha> certain;
-  if (has_alpha) certain = find_certain_alpha(film);
-  return [&image, has_alpha, certain = std::move(certain)](size_t i) {
-    if (!has_alpha) return 1.0f;
-    if (certain.empty() || certain[i] == CertainAlpha::None) return std::clamp(image[4 * i + 3], 0.0f, 1.0f);
-    return certain[i] == CertainAlpha::Opaque ? 1.0f : 0.0f;
+  std::vector<AlphaBounds> bounds;
+  if (has_alpha) bounds = find_alpha_bounds(film);
+  return [&image, has_alpha, bounds = std::move(bounds)](size_t i) {
+    return has_alpha ? std::clamp(image[4 * i + 3], bounds[i].least, bounds[i].most) : 1.0f;
   };
 }
 

@@ -36,9 +36,9 @@ class Developer {
 
   // Reconstructs Combined, and what is wanted of its error and its components, with the options of `developed`, which
   // are not AUTO. The images come from `source`, or from the film alone if there is none. The colours of L2 may be
-  // negative, those of the other reconstructions are at least 0; alpha lies in [0, 1]. The error is the estimated
-  // squared error of each pixel, as the mean over RGB. Throws invalid_operation if the film lacks the data that the
-  // reconstruction reads.
+  // negative, those of the other reconstructions are at least 0; alpha lies within its bounds (output/alpha_bounds.h).
+  // The error is the estimated squared error of each pixel, as the mean over RGB. Throws invalid_operation if the film
+  // lacks the data that the reconstruction reads.
   void reconstruct(DevelopedFilm* developed, const reconstruct::ReconstructionOutputs& wanted = {},
                    const Source& source = nullptr);
   // Denoises Combined if the options say so. Components are adapted so that they still add up to it, and the error is
