@@ -134,7 +134,7 @@ class Animation:
     def _create(self, job: Any, view: str, folder: str) -> int:
         settings = native.SequenceSettings(first=self.frames.first, last=self.frames.last, step=self.frames.step)
         settings.window_size = job.host_value("window_size")
-        # The library refuses windows that overlap by more than half, as those of less than ten frames would by default.
+        # The library refuses windows that overlap by more than half, as those of fewer than ten would by default.
         settings.window_overlap = min(job.host_value("window_overlap"), settings.window_size // 2)
         settings.with_flow = int(passes.needs_next_frame(job.requested_passes()))
         if folder:

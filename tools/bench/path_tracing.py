@@ -26,7 +26,7 @@ from version import conditions
 
 RESULTS = records.file_of("path_tracing")
 OURS = "path"
-MODES = (OURS, "cycles", "cycles-guided")
+MODES = (OURS, "cycles", "cycles-guided")  # of modes.py
 LEVEL, LEVEL_SAMPLES, LEVEL_SEED = "path-regularized", 8, 3000
 SETUP = ("width", "samples", "seeds", "version", "blender", "machine")  # columns in which rows must agree
 MEASURES = ("seconds", "variance", "variance_trimmed")  # of a sample
@@ -93,7 +93,7 @@ def median_of(row: Row, mode: str, name: str) -> float:
 
 
 def median_ratio(row: Row, peer: str, name: str) -> float:
-    """Returns the median of the ratios to a peer within each seed or pair of seeds, which the machine's pace leaves."""
+    """Returns the median of the ratios to a peer within each seed or pair of seeds, where the pace cancels."""
     pairs = zip(row["modes"][OURS][name], row["modes"][peer][name], strict=True)
     return statistics.median(ours / theirs for ours, theirs in pairs)
 

@@ -7,6 +7,7 @@
 
 namespace gradus::output {
 
+// The range in which the alpha of a pixel lies.
 struct AlphaBounds {
   float least = 0.0f, most = 1.0f;
 };
