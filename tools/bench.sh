@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs a part of the benchmark and writes the report. Everything goes to out/bench.
 #
-# usage: bench.sh all | errors | quick | agreement | pictures | speed | paths | reconstruct | animation | motion | host |
-#                 designs | animated-designs | compare | report
+# usage: bench.sh all | errors | quick | agreement | pictures | speed | paths | reconstruct | animation | motion |
+#                 host | designs | animated-designs | compare | report
 #
 # Variables of the environment limit a part; `make help` says which part reads which:
 #   SCENES=a,b  MODES=path,auto  REFERENCE=1024  SEEDS=5  SAMPLES=4,16,64  MINUTES=60  WIDTH=160

@@ -102,7 +102,7 @@ def test_c2_without_temporal_all_frames_are_stills(
 
 
 def test_a_small_window_limits_its_overlap(moving: bpy.types.Scene, tmp_path: Path) -> None:
-    """Regression: windows of less than ten frames ended in an error, unless the overlap was lowered, too."""
+    """Regression: windows of fewer than ten frames ended in an error, unless the overlap was lowered, too."""
     moving.frame_end = 4
     for size in (2, 3, 9):
         moving.gradus.window_size = size

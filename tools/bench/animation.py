@@ -31,7 +31,7 @@ from animation_references import Reference, file_of, level, reference
 from animation_renderer import AnimationRenderer
 from animation_scenes import ANIMATIONS, QUICK, Animation, select
 from animation_variants import SHUTTER, USUAL, Variant, of_row
-from runs import bench_each, names_of, parser_of, powers_of_two
+from runs import bench_each, names_of, parser_of, powers_of_two, works
 from version import conditions
 
 RESULTS = records.file_of("animations")
@@ -81,9 +81,7 @@ class AnimationBench:
         self._level: np.ndarray | None = None
 
     def works(self, mode: str) -> bool:
-        if why := self.renderer.refusal(mode):
-            print(f"SKIP {mode} in {self.animation.name}: {why}", flush=True)
-        return not why
+        return works(self.renderer, mode, self.animation.name)
 
     def level(self) -> np.ndarray:
         if self._level is None:

@@ -20,7 +20,7 @@ import records
 import temporal_metrics
 from records import Row
 from renderers import Renderers
-from runs import bench_each, names_of, parser_of
+from runs import bench_each, names_of, parser_of, works
 from scenes import Scene, select
 from version import conditions
 
@@ -40,7 +40,7 @@ def measure(scene: Scene, arguments: argparse.Namespace) -> dict[str, dict[str, 
     found: dict[str, dict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
     try:
         level = renderers.render(LEVEL, LEVEL_SAMPLES, LEVEL_SEED)[0].mean(axis=-1)
-        modes = [mode for mode in arguments.modes if not refused(renderers, mode, scene)]
+        modes = [mode for mode in arguments.modes if works(renderers, mode, scene.name)]
         before: dict[str, np.ndarray] = {}
         for seed in range(arguments.seeds):
             for mode in modes:
@@ -55,13 +55,6 @@ def measure(scene: Scene, arguments: argparse.Namespace) -> dict[str, dict[str, 
     finally:
         renderers.close()
     return found
-
-
-def refused(renderers: Renderers, mode: str, scene: Scene) -> bool:
-    """Returns whether a mode does not work here, and prints why."""
-    if why := renderers.refusal(mode):
-        print(f"SKIP {mode} in {scene.name}: {why}", flush=True)
-    return bool(why)
 
 
 def bench_scene(scene: Scene, arguments: argparse.Namespace, version: str, _: float) -> None:

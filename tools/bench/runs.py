@@ -29,6 +29,13 @@ def bench_each(scenes: list[Any], bench_one: BenchOne, arguments: argparse.Names
             break
 
 
+def works(renderer: Any, mode: str, scene: str) -> bool:
+    """Returns whether a mode works in a scene, and prints why if not. The renderer tells it by refusal(mode)."""
+    if why := renderer.refusal(mode):
+        print(f"SKIP {mode} in {scene}: {why}", flush=True)
+    return not why
+
+
 def names_of(known: Collection[str]) -> Callable[[str], list[str]]:
     """Returns a converter of the argument 'a,b' that refuses names that are not known."""
 

@@ -24,7 +24,7 @@ from modes import ESTIMATES_ERROR, MITSUBA, MODES, REFERENCES, WITHOUT_ERRORS
 from references import reference
 from renderers import Renderers
 from results import STILLS
-from runs import bench_each, names_of, parser_of, powers_of_two
+from runs import bench_each, names_of, parser_of, powers_of_two, works
 from scenes import QUICK, Scene, select
 from seeds import SeedSum
 from version import conditions
@@ -67,9 +67,7 @@ class SceneBench:
         self._references: dict[str, tuple[np.ndarray, np.ndarray]] = {}
 
     def works(self, mode: str) -> bool:
-        if why := self.renderers.refusal(mode):
-            print(f"SKIP {mode} in {self.scene.name}: {why}", flush=True)
-        return not why
+        return works(self.renderers, mode, self.scene.name)
 
     def is_comparable(self, mode: str) -> bool:
         """Returns whether the engine of a mode renders the same picture.

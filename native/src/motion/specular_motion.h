@@ -33,8 +33,8 @@ struct KnownMotion {
 };
 // Number of film rows that are tracked together. The chains of all pixels would take more memory than a frame.
 inline constexpr int32_t kTrackingBand = 64;
-// How often a search is tried: in one step in time, or in several smaller ones, too, where that fails. These follow up
-// to 0.5 % more points, for up to 4.4 times the rays (docs/experiments.md).
+// Whether a search takes one step in time alone, or also several smaller ones where that fails. The smaller ones follow
+// up to 0.5 % more points, for up to 4.4 times the rays (docs/experiments.md).
 enum class SearchSteps : uint8_t { One, Several };
 // Returns the motion of a part of the view `from` to the frame of `to`, which may have another time and another camera.
 // After cancelling, pixels are NotConverged. known: motion of another view, or nullptr.

@@ -14,6 +14,7 @@
 #include "base/fault.h"
 #include "base/fpu.h"
 #include "film/film.h"
+#include "film/pixel_sum.h"
 #include "output/shadow_catcher.h"
 #include "schema/pass_table.h"
 
@@ -97,10 +98,7 @@ float inverse_count(const film::Film& film, size_t i) {
 void read_noisy(const film::Film& film, const Region& region, float* pixels) {
   const float exposure = film.settings.film_exposure;
   for_pixels(film, region, [&](size_t i, size_t out) {
-    Radiance sum(0.0f);
-    for (const film::ComponentPlanes& component : film.components)
-      sum += component.primal[0][i] + component.primal[1][i];
-    const Radiance mean = sum * inverse_count(film, i);
+    const Radiance mean = film::sum_at(film, i) * inverse_count(film, i);
     float* p = pixels + 4 * out;
     for (int c = 0; c < 3; ++c) p[c] = exposure * mean[c];
     p[3] = film.color_channels == 4 ? std::clamp(mean.w, 0.0f, 1.0f) : (film::samples_at(film, i) > 0 ? 1.0f : 0.0f);

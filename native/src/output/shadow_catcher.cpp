@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "film/catcher_channels.h"
+#include "film/pixel_sum.h"
 #include "film/region_pixels.h"
 #include "schema/pass_table.h"
 
@@ -48,10 +49,8 @@ void read_shadow_catchers(const film::Film& film, const Region& region, float* r
   film::for_pixels(film, region, [&](size_t i, size_t out) {
     const uint32_t samples = film::samples_at(film, i);
     if (samples == 0) return;
-    float alpha = 0.0f;
-    for (const film::ComponentPlanes& component : film.components)
-      alpha += component.primal[0][i].w + component.primal[1][i].w;
-    const Rgb value = shadow(film, *shaded, i, std::clamp(alpha / float(samples), 0.0f, 1.0f));
+    const float alpha = film::sum_at(film, i).w / float(samples);
+    const Rgb value = shadow(film, *shaded, i, std::clamp(alpha, 0.0f, 1.0f));
     std::copy_n(&value.x, 3, rgb + 3 * out);
   });
 }

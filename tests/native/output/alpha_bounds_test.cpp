@@ -1,7 +1,9 @@
 // Bounds of alpha by the samples around a pixel.
 #include "output/alpha_bounds.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <random>
 
