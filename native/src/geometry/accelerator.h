@@ -34,7 +34,7 @@ struct AcceleratorInput {
 
 // Builds the acceleration structure of the given instances. `before` is the accelerator of the previous snapshot or
 // nullptr: unchanged groups are taken from it, and it is returned itself if nothing changed. The caller must set the
-// instances' flat_triangles afterwards. Throws Error CANCELLED or OUT_OF_MEMORY.
+// instances' records afterwards. Throws Error CANCELLED or OUT_OF_MEMORY.
 std::shared_ptr<const Accelerator> build_accelerator(const EmbreeDevice& device, const AcceleratorInput& input,
                                                      const BuildProgress& progress,
                                                      const std::shared_ptr<const Accelerator>& before);

@@ -15,11 +15,12 @@
 
 namespace gradus::geometry {
 
-struct MeshData;      // geometry/mesh.h
-struct Accelerator;   // geometry/accelerator.h: Embree scenes
-struct TangentField;  // geometry/tangent_field.h
-struct Rays4;         // geometry/rays4.h
-struct FlatTriangle;  // geometry/flat_triangle.h
+struct MeshData;        // geometry/mesh.h
+struct Accelerator;     // geometry/accelerator.h: Embree scenes
+struct TangentField;    // geometry/tangent_field.h
+struct Rays4;           // geometry/rays4.h
+struct TriangleRecord;  // geometry/triangle_records.h
+struct NormalRecord;    // geometry/triangle_records.h
 
 // Value of InstanceData::id for an instance that belongs to no object.
 inline constexpr uint64_t kNobody = UINT64_MAX;
@@ -28,9 +29,13 @@ inline constexpr uint64_t kNobody = UINT64_MAX;
 // counter-clockwise in the mesh's own space, also if the instance is mirrored.
 struct InstanceData : ObjectData {
   std::shared_ptr<const MeshData> mesh;
-  const FlatTriangle* flat_triangles = nullptr;  // owned by the accelerator; nullptr: not in the top level
-  std::shared_ptr<const MatrixKeys> keys;        // matrices while the shutter is open; nullptr: constant
-  bool deforms = false;                          // the mesh has shutter keys
+  // Records of the triangles and of their normals, which the accelerator owns. Without the first the mesh deforms; with
+  // the first alone it is shaded flat.
+  const TriangleRecord* triangles = nullptr;
+  const NormalRecord* normals = nullptr;
+  bool is_in_top_level = false;            // the records are in internal space, else in the mesh's own
+  std::shared_ptr<const MatrixKeys> keys;  // matrices while the shutter is open; nullptr: constant
+  bool deforms = false;                    // the mesh has shutter keys
   Mat4 to_world_previous{1.0f};
   Mat4 to_world_next{1.0f};
   bool was_there = true, will_be_there = true;  // the instance exists in the previous, in the next frame

@@ -89,6 +89,9 @@ std::shared_ptr<const MeshScene> build_mesh_scene(const EmbreeDevice& device,
                    deforms ? mesh->shutter_positions.data() : mesh->frame_positions(),
                    deforms ? mesh->shutter_keys : 1);
   commit_scene(device.get(), built->scene, progress, at, at);
+  if (!deforms)
+    built->records =
+        std::make_shared<TriangleRecords>(make_triangle_records(*mesh, mesh->frame_positions(), Mat3(1.0f)));
   return built;
 }
 
@@ -133,32 +136,32 @@ class GroupBuild {
       const float done = kMeshShare * float(i) / float(input.members.size());
       if ((i & 255) == 0 && !progress_(done)) throw cancelled();
       if (member.flat)
-        add_flat(*input.instance(member).mesh, (*input.to_internal)(member.instance), unsigned(i), member.mask);
+        add_flat(input.instance(member), (*input.to_internal)(member.instance), unsigned(i), member.mask);
       else
         add_instance(input.instance(member), unsigned(i), member.mask, done);
     }
     commit_scene(device_.get(), group_->scene, progress_, kMeshShare, 1.0f);
     group_->box = bounds_of(group_->scene);
-    size_t flat = 0;
-    for (const GroupInput::Member& member : input.members) {
-      FlatTriangles& triangles = group_->flat_triangles.emplace_back();
-      if (!member.flat) continue;
-      group_->meshes.push_back(input.instance(member).mesh);
-      triangles = make_flat_triangles(*input.instance(member).mesh, group_->flat_positions[flat++]->data());
-    }
     return group_;
   }
 
  private:
-  void add_flat(const MeshData& mesh, const glm::dmat4& to_internal, unsigned id, unsigned mask) {
+  void add_flat(const InstanceData& instance, const glm::dmat4& to_internal, unsigned id, unsigned mask) {
+    const MeshData& mesh = *instance.mesh;
+    group_->meshes.push_back(instance.mesh);
     group_->flat_positions.push_back(transform_positions(mesh, to_internal));
-    attach_triangles(device_.get(), group_->scene, id, mask, mesh, group_->flat_positions.back()->data(), 1);
+    const Vec3* positions = group_->flat_positions.back()->data();
+    attach_triangles(device_.get(), group_->scene, id, mask, mesh, positions, 1);
+    auto records = std::make_shared<TriangleRecords>(make_triangle_records(mesh, positions, instance.normal_to_world));
+    records->is_in_internal_space = true;
+    group_->records.push_back(std::move(records));
   }
   void add_instance(const InstanceData& instance, unsigned id, unsigned mask, float done) {
     std::shared_ptr<const MeshScene>& scene = known_[instance.mesh.get()];
     if (!scene) scene = build_mesh_scene(device_, instance.mesh, progress_, done);
     if (used_.insert(instance.mesh.get()).second) group_->mesh_scenes.push_back(scene);
     attach_instance(device_.get(), group_->scene, id, mask, scene->scene, instance);
+    group_->records.push_back(scene->records);
   }
 
   const EmbreeDevice& device_;

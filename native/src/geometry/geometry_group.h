@@ -10,10 +10,10 @@
 #include "base/commit_monitor.h"
 #include "base/types.h"
 #include "geometry/embree_device.h"
-#include "geometry/flat_triangle.h"
 #include "geometry/geometry.h"
 #include "geometry/mesh.h"
 #include "geometry/ray_box.h"
+#include "geometry/triangle_records.h"
 
 struct RTCSceneTy;
 
@@ -24,6 +24,7 @@ struct MeshScene {
   EmbreeDevice device;
   std::shared_ptr<const MeshData> mesh;
   RTCSceneTy* scene = nullptr;
+  std::shared_ptr<const TriangleRecords> records;  // null: the mesh deforms
   ~MeshScene();
 };
 
@@ -37,8 +38,8 @@ using ExactMatrices = std::function<glm::dmat4(size_t)>;
 struct GroupInput {
   struct Member {
     uint32_t instance;  // index in `instances`
-    uint32_t mask;  // Embree ray mask
-    bool flat;      // the triangles are copied into the top level
+    uint32_t mask;      // Embree ray mask
+    bool flat;          // the triangles are copied into the top level
   };
   const std::vector<InstanceData>* instances;
   const ExactMatrices* to_internal;
@@ -58,8 +59,9 @@ struct GeometryGroup {
   std::vector<std::shared_ptr<const MeshScene>> mesh_scenes;
   std::vector<std::shared_ptr<const MeshData>> meshes;             // keep the index buffers that the top level reads
   std::vector<std::unique_ptr<std::vector<Vec3>>> flat_positions;  // vertex buffers that the top level reads
-  std::vector<FlatTriangles> flat_triangles;                       // of each member; empty: not in the top level
-  RayBox box;                                                      // bounds while the shutter is open
+  // Records of each member: in internal space if it is flat, else in its own space; null if it deforms.
+  std::vector<std::shared_ptr<const TriangleRecords>> records;
+  RayBox box;  // bounds while the shutter is open
   ~GeometryGroup();
 };
 

@@ -76,7 +76,7 @@ std::array<Vec3, 3> triangle_positions_in_shutter(const MeshData& mesh, uint32_t
 }
 
 bool triangle_normals(const MeshData& mesh, uint32_t triangle, std::array<Vec3, 3>* normals) {
-  if (mesh.normals.empty() || mesh.normal_domain == GRADUS_DOMAIN_FACE) return false;
+  if (!has_smooth_normals(mesh)) return false;
   for (uint32_t k = 0; k < 3; ++k) (*normals)[k] = mesh.normals[element(mesh, mesh.normal_domain, triangle, k)];
   return true;
 }

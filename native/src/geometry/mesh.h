@@ -109,6 +109,10 @@ std::array<Vec3, 3> triangle_positions(const MeshData& mesh, uint32_t triangle);
 std::array<Vec3, 3> triangle_positions_at(const MeshData& mesh, uint32_t triangle, float time);
 // Returns the local corners of a triangle at a shutter time from 0 to 1. The interpolation is the same as Embree's.
 std::array<Vec3, 3> triangle_positions_in_shutter(const MeshData& mesh, uint32_t triangle, float time);
+// Returns whether the mesh has shading normals apart from those of its faces.
+inline bool has_smooth_normals(const MeshData& mesh) {
+  return !mesh.normals.empty() && mesh.normal_domain != GRADUS_DOMAIN_FACE;
+}
 // Finds the local shading normals of a triangle's corners, not normalised. Returns false if the mesh is shaded flat.
 bool triangle_normals(const MeshData& mesh, uint32_t triangle, std::array<Vec3, 3>* normals);
 // Finds the normals of triangle_normals() at a shutter time from 0 to 1. In a mesh that deforms they rotate as the

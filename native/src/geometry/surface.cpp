@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "base/fault.h"
-#include "geometry/flat_triangle.h"
 #include "geometry/geometry.h"
 #include "geometry/mesh.h"
+#include "geometry/triangle_records.h"
 
 namespace gradus::geometry {
 
@@ -20,15 +20,25 @@ Vec3 magnitudes(const Mat4& m, const Vec3& v) {
   return glm::abs(Vec3(m[0])) * v.x + glm::abs(Vec3(m[1])) * v.y + glm::abs(Vec3(m[2])) * v.z + glm::abs(Vec3(m[3]));
 }
 
+// Finds the interpolated normal of a hit in internal space, not normalised. Returns false if the mesh is shaded flat.
+bool find_smooth_normal(const InstanceData& instance, const Placement& placement, const Hit& hit, Vec3* normal) {
+  std::array<Vec3, 3> n;
+  if (instance.normals)
+    n = instance.normals[hit.primitive].corners;
+  else if (instance.triangles || !triangle_normals_in_shutter(*instance.mesh, hit.primitive, hit.time, &n))
+    return false;
+  *normal = interpolate(n, hit.uv);
+  if (!instance.is_in_top_level) *normal = placement.normal_to_world * *normal;
+  return true;
+}
+
 // Sets the shading normal: the corner normals interpolated linearly, or the geometric normal if the mesh is flat or its
 // normals have no direction.
 void set_shading_normal(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
-  std::array<Vec3, 3> n;
-  const bool smooth = triangle_normals_in_shutter(*instance.mesh, hit.primitive, hit.time, &n);
   const Vec3& geometric = point->geometric_normal;
-  point->shading_normal =
-      smooth ? keep_above(safe_unit(placement.normal_to_world * interpolate(n, hit.uv), geometric), geometric)
-             : geometric;
+  Vec3 normal;
+  const bool smooth = find_smooth_normal(instance, placement, hit, &normal);
+  point->shading_normal = smooth ? keep_above(safe_unit(normal, geometric), geometric) : geometric;
   point->shadow_terminator_offset = smooth ? instance.shadow_terminator_offset : 0.0f;
 }
 
@@ -39,7 +49,7 @@ uint32_t material_of_slot(const InstanceData& instance, uint32_t slot) {
 
 // Computes the surface point of a triangle in the top level, without the shading normal.
 void place_flat(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
-  const FlatTriangle& triangle = instance.flat_triangles[hit.primitive];
+  const TriangleRecord& triangle = instance.triangles[hit.primitive];
   const std::array<Vec3, 3>& p = triangle.corners;
   const std::array<Vec3, 3> sizes = {glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])};
   point->position = interpolate(p, hit.uv);
@@ -50,10 +60,21 @@ void place_flat(const InstanceData& instance, const Hit& hit, SurfacePoint* poin
   point->material = material_of_slot(instance, triangle.slot);
 }
 
+// Returns the record of a triangle of an instanced mesh at a shutter time.
+TriangleRecord local_triangle(const InstanceData& instance, uint32_t triangle, float time) {
+  if (instance.triangles) return instance.triangles[triangle];
+  TriangleRecord record;
+  record.corners = triangle_positions_in_shutter(*instance.mesh, triangle, time);
+  record.plane = plane_of(record.corners);
+  record.slot = instance.mesh->material_slot(triangle);
+  return record;
+}
+
 // Computes the surface point of a triangle of an instanced mesh, without the shading normal.
 void place_instanced(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
-  const std::array<Vec3, 3> p = triangle_positions_in_shutter(*instance.mesh, hit.primitive, hit.time);
-  const Plane plane = plane_of(p);
+  const TriangleRecord triangle = local_triangle(instance, hit.primitive, hit.time);
+  const std::array<Vec3, 3>& p = triangle.corners;
+  const Plane& plane = triangle.plane;
   const Vec3 local = interpolate(p, hit.uv);
   const Vec3 local_size = interpolate(std::array<Vec3, 3>{glm::abs(p[0]), glm::abs(p[1]), glm::abs(p[2])}, hit.uv);
   point->position = Vec3(placement.to_world * Vec4(local, 1.0f));
@@ -66,11 +87,11 @@ void place_instanced(const InstanceData& instance, const Placement& placement, c
   const Vec3 error = magnitudes(placement.to_world, local_size) * gamma_bound(roundings) +
                      magnitudes(linear, back) * gamma_bound(roundings) + magnitudes(linear, Vec3(plane.error));
   point->error = glm::dot(glm::abs(point->geometric_normal), error);
-  point->material = material_of_slot(instance, instance.mesh->material_slot(hit.primitive));
+  point->material = material_of_slot(instance, triangle.slot);
 }
 
 void place_at(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
-  if (instance.flat_triangles)
+  if (instance.is_in_top_level)
     place_flat(instance, hit, point);
   else
     place_instanced(instance, placement, hit, point);
@@ -99,9 +120,8 @@ const Placement& InstanceData::placement(float time, Placement* storage) const {
 
 uint32_t Geometry::material_of(uint32_t index, uint32_t primitive) const {
   const InstanceData& instance = instances[index];
-  const bool flat = instance.flat_triangles != nullptr;
-  return material_of_slot(instance,
-                          flat ? instance.flat_triangles[primitive].slot : instance.mesh->material_slot(primitive));
+  return material_of_slot(
+      instance, instance.triangles ? instance.triangles[primitive].slot : instance.mesh->material_slot(primitive));
 }
 
 void place(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
@@ -116,8 +136,13 @@ void Geometry::place(const Hit& hit, SurfacePoint* point) const {
 }
 
 void Geometry::prefetch(const Hit& hit) const {
-  if (hit.valid() && instances[hit.instance].flat_triangles)
-    __builtin_prefetch(&instances[hit.instance].flat_triangles[hit.primitive]);
+  if (!hit.valid()) return;
+  const InstanceData& instance = instances[hit.instance];
+  if (instance.triangles) __builtin_prefetch(&instance.triangles[hit.primitive]);
+  if (instance.normals) {
+    __builtin_prefetch(&instance.normals[hit.primitive].corners.front());
+    __builtin_prefetch(&instance.normals[hit.primitive].corners.back());
+  }
 }
 
 SurfacePoint Geometry::surface_point(const Hit& hit) const {
@@ -127,7 +152,7 @@ SurfacePoint Geometry::surface_point(const Hit& hit) const {
 }
 
 std::array<Vec3, 3> corners(const InstanceData& instance, uint32_t triangle, float time) {
-  if (instance.flat_triangles) return instance.flat_triangles[triangle].corners;
+  if (instance.is_in_top_level) return instance.triangles[triangle].corners;
   std::array<Vec3, 3> p = triangle_positions_in_shutter(*instance.mesh, triangle, time);
   const Mat4 to_world = instance.keys ? instance.keys->at(time) : instance.to_world;
   for (Vec3& v : p) v = Vec3(to_world * Vec4(v, 1.0f));

@@ -1,11 +1,68 @@
 // Plain path tracing: next-event estimation and BSDF sampling, combined by the balance heuristic. Unbiased.
+#include <optional>
+
 #include "integrator/integrator.h"
 #include "integrator/pixel_loop.h"
+#include "path/batch.h"
 #include "path/emission_edges.h"
 
 namespace gradus::integrator {
 
 namespace {
+
+// Number of paths that are traced together. With 8 a sample takes as long as with 32.
+constexpr size_t kBatchSize = 32;
+
+// A path of a batch, with memory of its own.
+struct Lane {
+  Lane(const path::PathContext& context, film::Film* film, film::Counters* counters)
+      : recorder(context, film, counters), tracer(context, &scratch, &recorder, counters, &observer) {}
+
+  PixelSample sample;
+  path::PathScratch scratch;
+  path::PassRecorder recorder;
+  path::NoObserver observer;
+  path::PathTracer<path::NoObserver> tracer;
+};
+
+// Samples whose paths are traced together. They are of different pixels, so that sums have one order.
+class Batch {
+ public:
+  Batch(const path::PathContext& context, const WorkUnit& unit, film::Film* film, film::Counters* counters)
+      : context_(context), unit_(unit), film_(*film), counters_(*counters) {}
+
+  // Starts the path of a sample.
+  void add(const PixelSample& s) {
+    if (count_ > 0 && s.number != lanes_[0]->sample.number) finish();
+    std::optional<Lane>& memory = lanes_[count_++];
+    Lane& lane = memory ? *memory : memory.emplace(context_, &film_, &counters_);
+    lane.sample = s;
+    lane.recorder.begin_sample(s.pixel, s.half, s.number, unit_.adds_components);
+    lane.tracer.want(unit_components(unit_, s.pixel));
+    const bool is_at_edge = unit_has_edge(unit_, s.pixel);
+    if (is_at_edge) path::make_edge_rays(context_, s.x, s.y, s.number, further_);
+    lane.tracer.start(s.sampler, s.film, s.first, {further_.data(), is_at_edge ? further_.size() : 0});
+    if (count_ == lanes_.size()) finish();
+  }
+
+  // Traces the paths that were started, and adds them to the film in the order of their samples.
+  void finish() {
+    path::extend_together<kBatchSize>(
+        count_, [&](size_t i) -> auto& { return lanes_[i]->tracer; });
+    for (size_t i = 0; i < count_; ++i)
+      add_primal(lanes_[i]->tracer.result(), lanes_[i]->sample, unit_, &film_, &counters_);
+    count_ = 0;
+  }
+
+ private:
+  const path::PathContext& context_;
+  const WorkUnit& unit_;
+  film::Film& film_;
+  film::Counters& counters_;
+  std::array<std::optional<Lane>, kBatchSize> lanes_;  // each is made when it is first used
+  size_t count_ = 0;
+  std::array<path::CameraRay, path::kEdgeRays> further_;
+};
 
 class PathIntegrator final : public Integrator {
  public:
@@ -18,20 +75,10 @@ class PathIntegrator final : public Integrator {
 
   void sample(const WorkUnit& unit, film::Film* film, film::Counters* counters,
               const std::atomic<bool>& stop) const override {
-    const auto scratch = std::make_unique<path::PathScratch>();
-    path::PassRecorder recorder(path_, film, counters);
-    path::NoObserver observer;
-    path::PathTracer<path::NoObserver> tracer(path_, scratch.get(), &recorder, counters, &observer);
+    const auto batch = std::make_unique<Batch>(path_, unit, film, counters);
     const auto vertices = std::make_unique<path::CameraVertices>(path_);
-    std::array<path::CameraRay, path::kEdgeRays> further;
-    for_each_sample(path_, unit, *film, vertices.get(), stop, [&](const PixelSample& s) {
-      recorder.begin_sample(s.pixel, s.half, s.number, unit.adds_components);
-      tracer.want(unit_components(unit, s.pixel));
-      const bool is_at_edge = unit_has_edge(unit, s.pixel);
-      if (is_at_edge) path::make_edge_rays(path_, s.x, s.y, s.number, further);
-      const std::span<const path::CameraRay> rays(further.data(), is_at_edge ? further.size() : 0);
-      add_primal(tracer.li(s.sampler, s.film, s.first, rays), s, unit, film, counters);
-    });
+    for_each_sample(path_, unit, *film, vertices.get(), stop, [&](const PixelSample& s) { batch->add(s); });
+    batch->finish();
   }
 
  private:

@@ -23,8 +23,12 @@ class Environment {
   using Radiance = std::function<Rgb(const Vec3&)>;
 
   struct Resolution {
+    // Wider maps are measured at half their resolution, and once more at all of it where the contrast is high.
+    static constexpr uint32_t kWidestMeasured = 1024;
     uint32_t width = 256;  // Width of the map in cells; its height is half of that.
-    uint32_t points = 2;   // Each cell evaluates the radiance at points² positions.
+    uint32_t points = 2;   // Each cell that is measured evaluates the radiance at points² positions.
+    // Returns the angle of a cell that is measured in any case, at the equator.
+    float angle() const { return 2.0f * kPi / float(width > kWidestMeasured ? width / 2 : width); }
   };
 
   // Returns a world with the same radiance in every direction; `mean` is the mean of the radiance's channels. Its

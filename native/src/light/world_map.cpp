@@ -14,9 +14,10 @@ namespace gradus::light {
 namespace {
 
 constexpr uint32_t kManual = 2;  // Value of GradusWorld::importance for a map of manual size.
-// Maximum width of a map of automatic size. Cycles uses larger maps for larger images, but these improve the density
-// only at scales below half a degree.
-constexpr uint32_t kWidest = 1024;
+// Maximum width of a map of automatic size. A sun in an image has a diameter of half a degree: six cells of such a map.
+constexpr uint32_t kWidest = 4096;
+// Width of the map of a world in which nodes make a sun that is no disc of its own.
+constexpr uint32_t kWidthOfHiddenSun = 1024;
 // Width of the map of a world without images. Such a world is smooth, or has edges that no map resolves.
 constexpr uint32_t kWidthOfNodes = 256;
 
@@ -51,14 +52,14 @@ bool same_world(const WorldMap& a, const WorldMap& b) {
 // limits.
 void look_for_sun(float half_angle, uint32_t map_size, Environment::Resolution* resolution) {
   constexpr uint32_t kMaxPoints = 4;
-  if (map_size == 0) resolution->width = kWidest;
-  const float cell = 2.0f * kPi / float(resolution->width);
-  resolution->points = std::clamp(uint32_t(std::ceil(cell / (1.2f * half_angle))), resolution->points, kMaxPoints);
+  if (map_size == 0) resolution->width = std::max(resolution->width, kWidthOfHiddenSun);
+  resolution->points =
+      std::clamp(uint32_t(std::ceil(resolution->angle() / (1.2f * half_angle))), resolution->points, kMaxPoints);
 }
 
 // Returns the resolution of the map. One point per cell covers every texel of an image that is at most as wide as the
-// map, because image look-ups are interpolated. Otherwise each cell has 2×2 points, so that a small sun between cell
-// centres is not missed.
+// map, because image look-ups are interpolated; at half the resolution it is the mean of four texels. Otherwise each
+// cell has 2×2 points, so that a small sun between cell centres is not missed.
 Environment::Resolution resolution(const LitScene& scene, const WorldMap& map) {
   uint32_t widest = 0;
   for (const uint32_t i : image_indices(map.material->emission, *scene.images))

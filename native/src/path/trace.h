@@ -87,11 +87,8 @@ class PathTracer {
   // camera ray and `further` ones, which have no path. The result is valid until the next path.
   const PathResult& li(const Sampler& sampler, const Vec2& film, CameraVertex* known = nullptr,
                        std::span<const CameraRay> further = {}) {
-    start_result();
-    alpha() = 1.0f;
-    if (!further.empty()) see_further(further);
-    Vertex* vertex = trace_camera_ray(sampler, film, known);
-    extend_path(sampler, vertex, Step::Emission);
+    start(sampler, film, known, further);
+    extend_path();
     return result_;
   }
 
@@ -108,93 +105,146 @@ class PathTracer {
   const PathResult& continue_path(const Sampler& sampler, const PathState& state, Vertex* vertex, bool is_lit) {
     start_result();
     state_ = state;
-    extend_path(sampler, vertex, is_lit ? Step::Scattering : Step::Light);
+    sampler_ = sampler;
+    source_ = RaySource{};
+    vertex_ = vertex;
+    step_ = is_lit ? Step::Scattering : Step::Light;
+    extend_path();
     return result_;
+  }
+
+  // Starts the path of li(). The steps below extend it, in this order and in a loop, until one of them returns false:
+  // then the path has ended, and result() is complete. Paths that take their steps in turn are faster (path/batch.h).
+  void start(const Sampler& sampler, const Vec2& film, CameraVertex* known = nullptr,
+             std::span<const CameraRay> further = {}) {
+    start_result();
+    alpha() = 1.0f;
+    if (!further.empty()) see_further(further);
+    start_camera_ray(sampler, film, known);
+  }
+  const PathResult& result() const { return result_; }
+
+  // Places the end of the last segment, of which the nearest hit is known.
+  void place() {
+    if (step_ != Step::Emission || is_placed_) return;
+    state_.depth == 0 ? trace_to_vertex() : trace_next_segment();
+  }
+  // Adds the emission on that segment and at its end, weighted against light sampling.
+  bool arrive() { return step_ != Step::Emission || add_emission(sampler_, source_, *vertex_); }
+  // Ends the path by Russian roulette, or evaluates the closures of its vertex.
+  bool shade() {
+    u_ = step_ == Step::Exit ? sampler_.walk_end(state_.depth) : sampler_.vertex(state_.depth);
+    return step_ >= Step::Scattering || survives(u_, vertex_);
+  }
+  // Samples the BSDF.
+  void scatter() {
+    arrival_ = state_;
+    enters_ = enters_surface(*vertex_, u_);
+    scatters_ = !enters_ && sample_bsdf(u_, *vertex_);
+  }
+  // Intersects the new ray with the scene, so that its hit is fetched from memory while the vertex is lit.
+  void intersect() {
+    if (scatters_ && !needs_lights_only()) intersect_ray();
+  }
+  // Adds light by next-event estimation.
+  void light() {
+    if (step_ != Step::Scattering && is_light_wanted(arrival_)) add_light(arrival_, u_, *vertex_);
+  }
+  // Moves on to the next segment, or, below a surface, to the point at which light leaves it.
+  bool leave() {
+    if (enters_) {
+      observer_.on_subsurface_entry(*vertex_, u_);
+      vertex_ = travel_below(sampler_, *vertex_);
+      step_ = Step::Exit;
+      return vertex_ != nullptr;
+    }
+    if (!scatters_) {
+      observer_.on_absorption(*vertex_, u_);
+      return false;
+    }
+    scratch_.event.is_exit = step_ == Step::Exit;
+    if (recorder_ != nullptr) recorder_->scattered(arrival_.depth, *vertex_, scratch_.event);
+    observer_.on_scattering(*vertex_, u_, scratch_.event);
+    source_ = RaySource{vertex_, &scratch_.event};
+    vertex_ = unused_vertex(*vertex_);
+    step_ = Step::Emission;
+    is_placed_ = false;
+    return true;
   }
 
  private:
   // Step at which a path is taken up at a vertex. At an exit from below a surface it is lit and scatters.
   enum class Step : uint8_t { Emission, Light, Scattering, Exit };
 
-  // Extends the path from `vertex`, the end of its last segment, until it ends.
-  void extend_path(const Sampler& sampler, Vertex* vertex, Step step) {
-    RaySource source;  // vertex and event at which the last segment starts; the camera at first
+  // Extends the path from the end of its last segment until it ends.
+  void extend_path() {
     for (;;) {
-      // Add the emission on the segment and at its end, weighted against light sampling.
-      if (step == Step::Emission && !add_emission(sampler, source, *vertex)) return;
-
-      // End the path by Russian roulette, or evaluate the closures of its vertex.
-      const VertexSample u = step == Step::Exit ? sampler.walk_end(state_.depth) : sampler.vertex(state_.depth);
-      if (step < Step::Scattering && !survives(u, vertex)) return;
-
-      // Sample the BSDF, and add light by next-event estimation. The next ray is intersected first, so that its hit is
-      // fetched from memory while the vertex is lit.
-      const PathState arrival = state_;
-      const bool enters = enters_surface(*vertex, u);
-      const bool scatters = !enters && sample_bsdf(u, *vertex);
-      if (step != Step::Scattering && is_light_wanted(arrival)) add_light(arrival, u, *vertex);
-
-      // Let light that enters the surface leave it elsewhere.
-      if (enters) {
-        observer_.on_subsurface_entry(*vertex, u);
-        vertex = travel_below(sampler, *vertex);
-        if (vertex == nullptr) return;
-        step = Step::Exit;
-        continue;
-      }
-      if (!scatters) return observer_.on_absorption(*vertex, u);
-      scratch_.event.is_exit = step == Step::Exit;
-      if (recorder_ != nullptr) recorder_->scattered(arrival.depth, *vertex, scratch_.event);
-      observer_.on_scattering(*vertex, u, scratch_.event);
-
-      // Trace the next segment.
-      source = RaySource{vertex, &scratch_.event};
-      vertex = unused_vertex(*vertex);
-      trace_next_segment(sampler, vertex);
-      step = Step::Emission;
+      place();
+      if (!arrive() || !shade()) return;
+      scatter();
+      intersect();
+      light();
+      if (!leave()) return;
     }
   }
 
   // ---- Segments ----
 
-  // Traces the camera ray. Returns the vertex at its end.
-  Vertex* trace_camera_ray(const Sampler& sampler, const Vec2& film, CameraVertex* known) {
+  // Starts a path with its camera ray, and intersects the ray with the scene.
+  void start_camera_ray(const Sampler& sampler, const Vec2& film, CameraVertex* known) {
+    sampler_ = sampler;
+    source_ = RaySource{};
+    step_ = Step::Emission;
     state_ = PathState{};
     const camera::CameraSample sample = camera_sample(context_, sampler, film);
     observer_.on_path_start(sampler, sample);
     ++counters_.rays_primary;
-    Vertex* vertex = &scratch_.vertices[0];
-    segment_ = &scratch_.segment;
-    if (known != nullptr && known->is_shared) {
-      vertex = &known->vertex;
-      segment_ = &known->segment;
-      state_.ray = known->ray;
-      state_.ray.state.random = sampler.key();
-      if (records_closures()) shade_vertex(context_, state_.ray.state, vertex);
-      SurfaceVisitor* const visiting = visitor();
-      if (visiting != nullptr && segment_->end == SegmentEnd::Surface)
-        visiting->visit(sampler, *vertex, state_.ray.state, segment_->weight);
+    is_placed_ = known != nullptr && known->is_shared;
+    if (is_placed_) {
+      take_camera_vertex(known);
     } else {
+      vertex_ = &scratch_.vertices[0];
       state_.ray = camera_path_ray(context_, context_.camera.ray(sample));
       state_.ray.state.random = sampler.key();
-      trace_to_vertex(sampler, known != nullptr ? &known->hit : nullptr, vertex);
+      if (known != nullptr)
+        next_hit_ = known->hit;
+      else
+        intersect_ray();
     }
-    return vertex;
+  }
+
+  // Takes the first segment and its end from a path with the same camera ray.
+  void take_camera_vertex(CameraVertex* known) {
+    vertex_ = &known->vertex;
+    segment_ = &known->segment;
+    state_.ray = known->ray;
+    state_.ray.state.random = sampler_.key();
+    if (records_closures()) shade_vertex(context_, state_.ray.state, vertex_);
+    SurfaceVisitor* const visiting = visitor();
+    if (visiting != nullptr && segment_->end == SegmentEnd::Surface)
+      visiting->visit(sampler_, *vertex_, state_.ray.state, segment_->weight);
+  }
+
+  // Intersects the ray of state_ with the scene, and prefetches its hit.
+  void intersect_ray() {
+    context_.scene.intersect(state_.ray.ray, state_.ray.visibility, &next_hit_);
+    context_.scene.prefetch(next_hit_);
   }
 
   // Traces the ray of state_, whose nearest hit is next_hit_. The vertex is set if the segment ends on a surface.
-  void trace_next_segment(const Sampler& sampler, Vertex* vertex) {
-    segment_ = &scratch_.segment;
+  void trace_next_segment() {
     if (needs_lights_only()) {
+      segment_ = &scratch_.segment;
       counters_.rays_bounce += trace_to_lights(context_, state_.ray, &scratch_.segment) ? 1 : 0;
     } else {
       ++counters_.rays_bounce;
-      trace_to_vertex(sampler, &next_hit_, vertex);
+      trace_to_vertex();
     }
   }
 
-  void trace_to_vertex(const Sampler& sampler, const geometry::Hit* first, Vertex* vertex) {
-    trace_segment(context_, sampler, state_.depth, first, &state_.ray, vertex, &scratch_.segment,
+  void trace_to_vertex() {
+    segment_ = &scratch_.segment;
+    trace_segment(context_, sampler_, state_.depth, &next_hit_, &state_.ray, vertex_, &scratch_.segment,
                   records_closures() ? Shading::Now : Shading::Later, visitor());
   }
 
@@ -215,8 +265,9 @@ class PathTracer {
 
   // Adds what the camera sees along a ray. Returns whether a path could scatter at its end.
   bool add_seen(const CameraRay& ray) {
-    const Vertex* vertex = trace_camera_ray(ray.sampler, ray.film, nullptr);
-    return add_emission(ray.sampler, RaySource{}, *vertex);
+    start_camera_ray(ray.sampler, ray.film, nullptr);
+    place();
+    return add_emission(sampler_, source_, *vertex_);
   }
 
   // Adds the share of further camera rays in what the camera sees. If one of them ends on a mirror or on glass, the
@@ -328,15 +379,10 @@ class PathTracer {
     return true;
   }
 
-  // Scatters the path and intersects the new ray with the scene. Returns false if the path ends.
+  // Scatters the path. Returns false if it ends.
   bool sample_bsdf(const VertexSample& u, const Vertex& vertex) {
-    if (!scatter(context_, u, vertex, &state_, &scratch_.event)) return false;
-    if (!can_reach_wanted() && !records_closures()) return false;
-    if (!needs_lights_only()) {
-      context_.scene.intersect(state_.ray.ray, state_.ray.visibility, &next_hit_);
-      context_.scene.prefetch(next_hit_);
-    }
-    return true;
+    if (!path::scatter(context_, u, vertex, &state_, &scratch_.event)) return false;
+    return can_reach_wanted() || records_closures();
   }
 
   // Lets the path travel below the surface that it has met at a vertex. Returns the vertex at which it leaves, or null.
@@ -424,6 +470,15 @@ class PathTracer {
   film::Counters& counters_;
   Observer& observer_;
   uint32_t wanted_ = lpe::kEveryComponent;
+  Sampler sampler_;
+  RaySource source_;                  // vertex and event at which the last segment starts; the camera at first
+  Vertex* vertex_ = nullptr;          // end of the last segment
+  Step step_ = Step::Emission;        // at which the path is taken up at the vertex
+  VertexSample u_;                    // random numbers of the vertex
+  bool is_placed_ = false;            // the vertex is set
+  bool enters_ = false;               // the path enters the surface at the vertex
+  bool scatters_ = false;             // it leaves the vertex by the event in scratch_
+  PathState arrival_;                 // state with which it arrived at the vertex
   PathState state_;                   // state at the end of the path
   geometry::Hit next_hit_;            // nearest hit of the ray that leaves the latest vertex
   const Segment* segment_ = nullptr;  // last segment of the path

@@ -33,11 +33,15 @@ uint32_t embree_mask(const geometry::InstanceData& instance, bool transparent) {
   return mask;
 }
 
-// Sets the pointers of the instances to the triangles of one part of the acceleration structure.
-void refer_to_triangles(const geometry::Accelerator::Part& part, Snapshot* snapshot) {
+// Sets the pointers of the instances to the records of one part of the acceleration structure.
+void refer_to_records(const geometry::Accelerator::Part& part, Snapshot* snapshot) {
+  const auto data_of = [](const auto& values) { return values.empty() ? nullptr : values.data(); };
   for (size_t k = 0; k < part.instances.size(); ++k) {
-    const geometry::FlatTriangles& flat = part.group->flat_triangles[k];
-    snapshot->instances[part.instances[k]].flat_triangles = flat.empty() ? nullptr : flat.data();
+    const geometry::TriangleRecords* records = part.group->records[k].get();
+    geometry::InstanceData& instance = snapshot->instances[part.instances[k]];
+    instance.triangles = records ? data_of(records->triangles) : nullptr;
+    instance.normals = records ? data_of(records->normals) : nullptr;
+    instance.is_in_top_level = records && records->is_in_internal_space;
   }
 }
 
@@ -79,8 +83,8 @@ void build_geometry(const geometry::EmbreeDevice& device, const geometry::ExactM
   }
   snapshot->accelerator =
       geometry::build_accelerator(device, {&snapshot->instances, &masks, to_internal}, progress, before);
-  refer_to_triangles(snapshot->accelerator->static_part, snapshot);
-  refer_to_triangles(snapshot->accelerator->moving, snapshot);
+  refer_to_records(snapshot->accelerator->static_part, snapshot);
+  refer_to_records(snapshot->accelerator->moving, snapshot);
 }
 
 void add_tangents(const Snapshot* before, const CommitMonitor& monitor, Snapshot* snapshot) {

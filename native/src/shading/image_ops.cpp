@@ -1,4 +1,5 @@
 // The Image Texture and Environment Texture nodes.
+#include "base/trigonometry.h"
 #include "image/image_store.h"
 #include "shading/context_ops.h"
 #include "shading/image_mode.h"
@@ -84,8 +85,11 @@ Vec4 box(const Sampler& sampler, const Vec3& p, const Vec3& n, float blend) {
 
 // Equirectangular projection with +X in the middle of the image.
 Vec2 latitude_longitude(const Vec3& d) {
-  const float u = d.x == 0.0f && d.y == 0.0f ? 0.5f : 0.5f - std::atan2(d.y, d.x) * (0.5f * kInvPi);
-  return Vec2(u, std::atan2(d.z, std::sqrt(d.x * d.x + d.y * d.y)) * kInvPi + 0.5f);
+  const float horizontal2 = d.x * d.x + d.y * d.y;
+  if (!(horizontal2 > 0.0f)) return Vec2(0.5f, d.z > 0.0f ? 1.0f : d.z < 0.0f ? 0.0f : 0.5f);
+  const auto longitude = static_cast<float>(angle_of(d.x, d.y)),
+             latitude = static_cast<float>(angle_of(std::sqrt(horizontal2), d.z));
+  return Vec2(0.5f - longitude * (0.5f * kInvPi), latitude * kInvPi + 0.5f);
 }
 
 // Projection of a mirror ball that is seen along +Y.

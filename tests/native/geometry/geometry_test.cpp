@@ -95,7 +95,7 @@ TEST(D2_SelfHits, InstancesFarAwayAndScaled) {
                    translation(1e5f * Vec3(uniform(random), uniform(random), uniform(random))) * scaling(Vec3(size)));
   }
   const auto snapshot = scene.commit();
-  ASSERT_EQ(snapshot->instances[0].flat_triangles, nullptr);
+  ASSERT_FALSE(snapshot->instances[0].is_in_top_level);
   int again = 0;
   for (uint32_t i = 0; i < 20; ++i)
     for (int k = 0; k < 500; ++k) {

@@ -78,7 +78,8 @@ uint32_t image_map_width(uint32_t image_width) {
 TEST(WorldMap, IsNoWiderThanItsImage) {
   EXPECT_EQ(image_map_width(64), 64u);
   EXPECT_EQ(image_map_width(512), 512u);
-  EXPECT_EQ(image_map_width(2048), 1024u);
+  EXPECT_EQ(image_map_width(2048), 2048u);
+  EXPECT_EQ(image_map_width(4100), 4096u);
 }
 
 TEST(WorldMap, OfNodesAloneIsSmall) {
