@@ -12,7 +12,7 @@ endif
 
 .DEFAULT_GOAL := help
 .PHONY: help build render render-animation test test-full test-native test-regression test-addon stress faults coverage compilers package schema format lint clean
-BENCH := $(addprefix bench-,errors quick agreement pictures speed paths reconstruct animation motion host designs \
+BENCH := $(addprefix bench-,errors quick agreement pictures speed paths profiles reconstruct animation motion host designs \
            animated-designs compare report)
 .PHONY: bench $(BENCH) picture picture-components
 
@@ -67,6 +67,7 @@ bench-agreement: ## stills: converged images against those of Cycles and Mitsuba
 bench-pictures: ## stills: pictures and error maps of the project's own scenes: SCENES=hero
 bench-speed:    ## CPU time of a sample in rooms of 1 k to 2 M triangles next to Cycles: ROOMS=room-1k REPEATS=3
 bench-paths:    ## variance and CPU time of a sample in scenes next to Cycles: SCENES=a,b SPEED_WIDTH=640
+bench-profiles: ## where the time of plain paths goes: flame graphs, and the share of ray tracing: SCENES=a,b
 bench-reconstruct: ## CPU time of the reconstructions at 1920x1080: REPEATS=3
 bench-animation: ## animations: error and flicker against CPU time: SCENES=a,b BLUR=1 QUICK=1 (two, 30 minutes)
 bench-motion:   ## motion of components: MEASURES=truth,prediction,flicker,cost SCENES=a,b BLUR=1 LOADED=1

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Runs a part of the benchmark and writes the report. Everything goes to out/bench.
 #
-# usage: bench.sh all | errors | quick | agreement | pictures | speed | paths | reconstruct | animation | motion |
-#                 host | designs | animated-designs | compare | report
+# usage: bench.sh all | errors | quick | agreement | pictures | speed | paths | profiles | reconstruct | animation |
+#                 motion | host | designs | animated-designs | compare | report
 #
 # Variables of the environment limit a part; `make help` says which part reads which:
 #   SCENES=a,b  MODES=path,auto  REFERENCE=1024  SEEDS=5  SAMPLES=4,16,64  MINUTES=60  WIDTH=160
@@ -42,6 +42,7 @@ errors() { run stills.py "${limits[@]}" width "$@"; }
 agreement() { run agreement.py scenes width samples=REFERENCE; }
 pictures() { run pictures.py scenes; }
 paths() { run path_tracing.py scenes width=SPEED_WIDTH minutes; }
+profiles() { run profiles.py scenes width=SPEED_WIDTH minutes; }
 speed() { run speed.py rooms width=SPEED_WIDTH repeats minutes; }
 reconstruct() { run reconstruction_time.py repeats; }
 animation() { run animation.py "${limits[@]}" size frames checked ${BLUR:+--blur} ${QUICK:+--quick}; }
@@ -55,6 +56,7 @@ case $part in
     reconstruct
     speed
     paths
+    profiles
     errors
     animation
     MODES='' motion # it has modes of its own
@@ -63,7 +65,7 @@ case $part in
     report
     exit "${differs:-0}"
     ;;
-  errors | agreement | pictures | speed | paths | reconstruct | animation | motion) set_up; "$part"; report ;;
+  errors | agreement | pictures | speed | paths | profiles | reconstruct | animation | motion) set_up; "$part"; report ;;
   quick) set_up; errors --quick; report ;;
   host) set_up blender; run host.py; report ;;
   animated-designs)

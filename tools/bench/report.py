@@ -18,6 +18,7 @@ import motion_report
 import numpy as np
 import path_tracing
 import pictures
+import profiles
 import records
 import results
 import speed
@@ -92,6 +93,20 @@ def plain_paths() -> list[Block]:
     about += f"commit {last['version']}, Blender {last['blender']}, {last['machine']}"
     meaning = "Gradus over Cycles for each sample; variance-t leaves out the worst 0.1 % of the pixels."
     return [Text(f"## Plain paths: variance and time of a sample\n\n{meaning} {about}."), made]
+
+
+def ray_shares() -> list[Block]:
+    """Table of the share of ray tracing in the time of plain paths, with the flame graphs."""
+    rows = profiles.newest()
+    if not rows:
+        return []
+    made = Table(["scene", "ray tracing", "flame graph"])
+    for row in rows:
+        picture = f"{profiles.PICTURES}/{row['scene']}.svg"
+        made.rows.append([row["scene"], f"{100 * row['rays']:.0f} %", picture])
+    last = rows[-1]
+    about = f"{last['width']} pixels wide; commit {last['version']}, {last['machine']}"
+    return [Text(f"## Ray tracing in the time of plain paths\n\nShare of the stacks inside Embree. {about}."), made]
 
 
 def rooms() -> list[Block]:
@@ -270,7 +285,7 @@ def blocks() -> list[Block]:
     made: list[Block] = [Text(PREFACE), *overview(scenes), Text("## Targets"), targets.table(scenes)]
     made += [*equal_time(scenes), *shortfalls(scenes)] if scenes else []
     made += [*animation_report.blocks(), *motion_report.blocks()]
-    made += [*plain_paths(), *rooms(), *sample_costs(scenes), *agreements(), *export_and_upload()]
+    made += [*plain_paths(), *ray_shares(), *rooms(), *sample_costs(scenes), *agreements(), *export_and_upload()]
     for scene in scenes:
         made += details(scene)
     return made

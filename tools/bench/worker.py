@@ -8,7 +8,8 @@ The image is stored as float32 (height, width, 3), top row first. CPU seconds ar
 operator: export, build, sampling, reconstruction or denoising, and writing a small file. A job may also have
   "bounces": a number that replaces all bounce limits of the file;
   "error": true, which stores the pass Error as a fourth channel (the time of such a job is not used);
-  "film": a file that gets the film: samples, differences and features in half-buffers.
+  "film": a file that gets the film: samples, differences and features in half-buffers;
+  "scene": a file that gets the scene as it is exported, for the tool of the build.
 A job that cannot be done is answered by {"error": "why"}.
 """
 
@@ -85,6 +86,7 @@ def render(job: Job, folder: Path, bounces: dict[str, int]) -> Answer:
     target = folder / "image.exr"
     scene.render.filepath = str(target.with_suffix(""))
     scene.gradus.frame_store = str(folder / "films") if "film" in job else ""
+    sys.argv[1:] = ["--", "--gradus-save-scene", job["scene"]] if "scene" in job else []
     answer = timed(lambda: bpy.ops.render.render(write_still=True))
     layer = bpy.context.view_layer.name
     if is_gradus:
