@@ -41,7 +41,7 @@ class Batch {
     lane.tracer.want(unit_components(unit_, s.pixel));
     const bool is_at_edge = unit_has_edge(unit_, s.pixel);
     if (is_at_edge) path::make_edge_rays(context_, s.x, s.y, s.number, further_);
-    lane.tracer.start(s.sampler, s.film, s.first, {further_.data(), is_at_edge ? further_.size() : 0});
+    lane.tracer.start(s.sampler, s.film, nullptr, {further_.data(), is_at_edge ? further_.size() : 0});
     if (count_ == lanes_.size()) finish();
   }
 
@@ -76,8 +76,7 @@ class PathIntegrator final : public Integrator {
   void sample(const WorkUnit& unit, film::Film* film, film::Counters* counters,
               const std::atomic<bool>& stop) const override {
     const auto batch = std::make_unique<Batch>(path_, unit, film, counters);
-    const auto vertices = std::make_unique<path::CameraVertices>(path_);
-    for_each_sample(path_, unit, *film, vertices.get(), stop, [&](const PixelSample& s) { batch->add(s); });
+    for_each_sample(path_, unit, *film, nullptr, stop, [&](const PixelSample& s) { batch->add(s); });
     batch->finish();
   }
 

@@ -68,7 +68,8 @@ PixelSample make_pixel_sample(const path::PathContext& context, const WorkUnit& 
                               int32_t y, uint32_t number);
 
 // Calls body(PixelSample) for each sample of the unit, until `stop`. The order is by pixel block, by sample number, and
-// by pixel. So the sums of pixels do not depend on tiles, threads, or how samples are split over units.
+// by pixel. So the sums of pixels do not depend on tiles, threads, or how samples are split over units. `vertices` may
+// be null. Those of a row last until the row after the next is visited.
 template <class Body>
 void for_each_sample(const path::PathContext& context, const WorkUnit& unit, const film::Film& film,
                      path::CameraVertices* vertices, const std::atomic<bool>& stop, Body&& body) {
@@ -78,7 +79,7 @@ void for_each_sample(const path::PathContext& context, const WorkUnit& unit, con
     for (uint32_t i = 0; i < maximum; ++i) {
       const uint32_t number = first + i;
       const Vec2 jitter = is_shared ? block_jitter(context, unit, block, number) : Vec2(0.0f);
-      vertices->begin(jitter);
+      if (vertices != nullptr) vertices->begin(jitter);
       for (int32_t y = block.y0; y < block.y1 - (GRADUS_FAULT(last_row_of_pixel_blocks_lost) ? 1 : 0); ++y) {
         for (int32_t x = block.x0; x < block.x1; ++x) {
           const size_t pixel = film.index(x, y);
@@ -89,7 +90,7 @@ void for_each_sample(const path::PathContext& context, const WorkUnit& unit, con
             return;
           }
           PixelSample sample = make_pixel_sample(context, unit, film, x, y, number);
-          if (is_shared) {
+          if (is_shared && vertices != nullptr) {
             sample.first = vertices->at(x, y);
           }
           sample.film = path::pixel_centre(x, y) + (is_shared ? jitter : pixel_jitter(context, unit, film, sample));

@@ -1,9 +1,9 @@
 // The path tracer: traces one base path and notifies an observer, which may shift the path to neighbouring pixels.
 //
-// PathTracer::li() is the algorithm from top to bottom. The steps are in functions that are compiled once, apart from
-// the observer (segment.h, contribution.h, scatter.h, subsurface.h), so that the picture has the same bits with every
-// observer. A new kind of scattering event, as in a medium, is a case of sample_bsdf() and of SegmentEnd; what the path
-// carries between two vertices, as media around it, belongs to PathRay.
+// The steps of PathTracer, from start() to leave(), are the algorithm. What they do is in functions that are compiled
+// once, apart from the observer (segment.h, contribution.h, scatter.h, subsurface.h), so that the picture has the same
+// bits with every observer. A new kind of scattering event, as in a medium, is a case of scatter() and of SegmentEnd;
+// what the path carries between two vertices, as media around it, belongs to PathRay.
 #pragma once
 
 #include <algorithm>
@@ -130,17 +130,23 @@ class PathTracer {
     state_.depth == 0 ? trace_to_vertex() : trace_next_segment();
   }
   // Adds the emission on that segment and at its end, weighted against light sampling.
-  bool arrive() { return step_ != Step::Emission || add_emission(sampler_, source_, *vertex_); }
+  bool arrive() { return step_ != Step::Emission || add_emission(); }
   // Ends the path by Russian roulette, or evaluates the closures of its vertex.
   bool shade() {
     u_ = step_ == Step::Exit ? sampler_.walk_end(state_.depth) : sampler_.vertex(state_.depth);
-    return step_ >= Step::Scattering || survives(u_, vertex_);
+    if (step_ >= Step::Scattering) return true;
+    const float survival = survive(u_, &state_);
+    if (!(survival > 0.0f)) return false;
+    shade_vertex(context_, state_.ray.state, vertex_);
+    observer_.on_survival(survival, *vertex_);
+    return true;
   }
   // Samples the BSDF.
   void scatter() {
     arrival_ = state_;
     enters_ = enters_surface(*vertex_, u_);
-    scatters_ = !enters_ && sample_bsdf(u_, *vertex_);
+    scatters_ = !enters_ && path::scatter(context_, u_, *vertex_, &state_, &scratch_.event) &&
+                (can_reach_wanted() || records_closures());
   }
   // Intersects the new ray with the scene, so that its hit is fetched from memory while the vertex is lit.
   void intersect() {
@@ -148,13 +154,13 @@ class PathTracer {
   }
   // Adds light by next-event estimation.
   void light() {
-    if (step_ != Step::Scattering && is_light_wanted(arrival_)) add_light(arrival_, u_, *vertex_);
+    if (step_ != Step::Scattering && is_light_wanted(arrival_)) add_light();
   }
   // Moves on to the next segment, or, below a surface, to the point at which light leaves it.
   bool leave() {
     if (enters_) {
       observer_.on_subsurface_entry(*vertex_, u_);
-      vertex_ = travel_below(sampler_, *vertex_);
+      vertex_ = travel_below();
       step_ = Step::Exit;
       return vertex_ != nullptr;
     }
@@ -267,7 +273,7 @@ class PathTracer {
   bool add_seen(const CameraRay& ray) {
     start_camera_ray(ray.sampler, ray.film, nullptr);
     place();
-    return add_emission(sampler_, source_, *vertex_);
+    return add_emission();
   }
 
   // Adds the share of further camera rays in what the camera sees. If one of them ends on a mirror or on glass, the
@@ -294,33 +300,33 @@ class PathTracer {
   }
 
   // Adds the emission on the last segment and at its end. Returns whether the path can scatter there.
-  bool add_emission(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
-    observer_.on_segment(source, state_, *segment_, vertex);
-    add_analytic_lights(source);
+  bool add_emission() {
+    observer_.on_segment(source_, state_, *segment_, *vertex_);
+    add_analytic_lights();
     apply_segment(*segment_, &state_);
     observer_.on_segment_passed(*segment_);
     bool is_surface = false;
-    const RaySource seen_from = segment_->passes_portal ? RaySource{} : source;
+    const RaySource seen_from = segment_->passes_portal ? RaySource{} : source_;
     if (segment_->end == SegmentEnd::Escaped) {
       add_world(seen_from);
     } else if (segment_->end == SegmentEnd::Surface) {
-      result_.fallback |= vertex.shade.fallback;
-      is_surface = add_surface(sampler, seen_from, vertex);
+      result_.fallback |= vertex_->shade.fallback;
+      is_surface = add_surface(seen_from);
     }
     observer_.on_emission_complete();
     return is_surface && !state_.emission_only && !is_at_transparent_limit(context_, state_.ray.state) &&
            can_reach_wanted();
   }
 
-  void add_analytic_lights(const RaySource& source) {
+  void add_analytic_lights() {
     for (const LightCrossing& crossing : segment_->light_crossings) {
-      const Contribution c = shared(light_hit_contribution(context_, source, state_, crossing));
+      const Contribution c = shared(light_hit_contribution(context_, source_, state_, crossing));
       if (recorder_ != nullptr)
         recorder_->record_light(state_.throughput * crossing.weight, c.component, c.light, crossing.distance);
       if (!is_black(c.clamped)) {
         add(c);
         if (records(c)) recorder_->emission(pass_depth(), crossing.point, c.clamped);
-        observer_.on_light_crossing(source, c, crossing);
+        observer_.on_light_crossing(source_, c, crossing);
       }
     }
   }
@@ -348,73 +354,58 @@ class PathTracer {
 
   // Returns whether the path can scatter at the surface. It cannot where the surface cuts a hole into the film. What a
   // shadow catcher shows is recorded apart from the picture (catcher_recorder.h).
-  bool add_surface(const Sampler& sampler, const RaySource& source, const Vertex& vertex) {
+  bool add_surface(const RaySource& source) {
     if (state_.shows_background()) {
-      if (cuts_hole(context_, vertex)) {
+      if (cuts_hole(context_, *vertex_)) {
         add_transparency(mean_component(state_.throughput));
-        if (recorder_ != nullptr) recorder_->hole(sampler, state_, vertex, *segment_);
+        if (recorder_ != nullptr) recorder_->hole(sampler_, state_, *vertex_, *segment_);
         return false;
       }
-      add_transparency(holdout_alpha(state_.throughput, vertex.shade.holdout));
+      add_transparency(holdout_alpha(state_.throughput, vertex_->shade.holdout));
     }
-    if (recorder_ != nullptr) recorder_->surface(state_, vertex, *segment_);
-    const Contribution c = shared(emission_contribution(context_, source, state_, vertex));
+    if (recorder_ != nullptr) recorder_->surface(state_, *vertex_, *segment_);
+    const Contribution c = shared(emission_contribution(context_, source, state_, *vertex_));
     if (recorder_ != nullptr) recorder_->record_emission(c.component, c.light);
     if (!is_black(c.clamped)) {
       add(c);
-      if (records(c)) recorder_->emission(pass_depth(), vertex, c.clamped);
-      observer_.on_emission(source, c, vertex);
+      if (records(c)) recorder_->emission(pass_depth(), *vertex_, c.clamped);
+      observer_.on_emission(source, c, *vertex_);
     }
     return true;
   }
 
   // ---- Scattering ----
 
-  // Plays Russian roulette. Returns whether the path continues, with the closures of its vertex.
-  bool survives(const VertexSample& u, Vertex* vertex) {
-    const float survival = survive(u, &state_);
-    if (!(survival > 0.0f)) return false;
-    shade_vertex(context_, state_.ray.state, vertex);
-    observer_.on_survival(survival, *vertex);
-    return true;
-  }
-
-  // Scatters the path. Returns false if it ends.
-  bool sample_bsdf(const VertexSample& u, const Vertex& vertex) {
-    if (!path::scatter(context_, u, vertex, &state_, &scratch_.event)) return false;
-    return can_reach_wanted() || records_closures();
-  }
-
   // Lets the path travel below the surface that it has met at a vertex. Returns the vertex at which it leaves, or null.
-  Vertex* travel_below(const Sampler& sampler, const Vertex& entry) {
+  Vertex* travel_below() {
     const lpe::LpeState behind = context_.components.next(state_.lpe_state, bsdf::ScatterClass::Diffuse);
     if ((context_.components.ahead(behind) & wanted_) == 0 && !records_closures()) return nullptr;
+    const Vertex& entry = *vertex_;
     Vertex* exit = unused_vertex(entry);
     SubsurfaceEvent event;
-    if (!scatter_below(context_, sampler, state_.depth, state_.ray.state, entry, &event, exit)) return nullptr;
+    if (!scatter_below(context_, sampler_, state_.depth, state_.ray.state, entry, &event, exit)) return nullptr;
     state_.throughput *= event.factor;
     observer_.on_subsurface_exit(entry, event);
     return exit;
   }
 
-  // Adds light by next-event estimation. `arrival` is the state with which the path arrived at the vertex.
-  void add_light(const PathState& arrival, const VertexSample& u, const Vertex& vertex) {
+  void add_light() {
     LightSample& light = scratch_.light;
     LitClass lit[bsdf::kPathEvents];
-    if (!sample_light(context_, u, vertex, arrival.depth, &light) ||
-        !light_classes(context_, vertex, light, arrival.ray.state, lit)) {
+    if (!sample_light(context_, u_, *vertex_, arrival_.depth, &light) ||
+        !light_classes(context_, *vertex_, light, arrival_.ray.state, lit)) {
       return;
     }
     ++counters_.rays_shadow;
     const LightVisibility visibility =
-        light_visibility(context_, vertex.point, light.point, light.view, arrival.ray.state.transparent_depth);
+        light_visibility(context_, vertex_->point, light.point, light.view, arrival_.ray.state.transparent_depth);
     for (int k = 0; k < bsdf::kPathEvents && !is_black(visibility.transmittance); ++k) {
       const auto scatter_class = static_cast<bsdf::ScatterClass>(k);
-      const Contribution c = light_contribution(context_, arrival, light, scatter_class, lit[k], visibility);
+      const Contribution c = light_contribution(context_, arrival_, light, scatter_class, lit[k], visibility);
       if (!is_black(c.clamped)) {
         add(c);
-        if (records(c)) recorder_->light(arrival, vertex, scatter_class, light, c.clamped);
-        observer_.on_light_sample(vertex, light, scatter_class, c);
+        if (records(c)) recorder_->light(arrival_, *vertex_, scatter_class, light, c.clamped);
+        observer_.on_light_sample(*vertex_, light, scatter_class, c);
       }
     }
   }
