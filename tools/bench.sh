@@ -65,7 +65,11 @@ case $part in
     report
     exit "${differs:-0}"
     ;;
-  errors | agreement | pictures | speed | paths | profiles | reconstruct | animation | motion) set_up; "$part"; report ;;
+  errors | agreement | pictures | speed | paths | profiles | reconstruct | animation | motion)
+    set_up
+    "$part"
+    report
+    ;;
   quick) set_up; errors --quick; report ;;
   host) set_up blender; run host.py; report ;;
   animated-designs)

@@ -77,10 +77,10 @@ def svg(stacks: Stacks, title: str) -> str:
 
 def box(name: str, x: float, y: float, width: float, share: float) -> str:
     """Draws a function, with its name as far as it fits, and with its share in the tooltip."""
-    warm = "#e8b878" if name.startswith("embree") else "#d8d8e8"
+    color = "#e8b878" if name.startswith("embree") else "#d8d8e8"
     text = escape(name[: int(width / 6.2)]) if width > 20 else ""
     return (
         f"<g><title>{escape(name)}: {100 * share:.1f} %</title>"
-        f'<rect x="{x:.2f}" y="{y:g}" width="{width:.2f}" height="{ROW - 1:g}" fill="{warm}"/>'
+        f'<rect x="{x:.2f}" y="{y:g}" width="{width:.2f}" height="{ROW - 1:g}" fill="{color}"/>'
         f'<text x="{x + 2:.2f}" y="{y + ROW - 5:g}" font-size="10">{text}</text></g>'
     )

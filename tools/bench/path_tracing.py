@@ -75,9 +75,7 @@ def load() -> list[Row]:
 
 def newest() -> list[Row]:
     """Returns the last row of each scene, of those that were measured like the last one of all and have Gradus."""
-    rows = [row for row in load() if OURS in row["modes"]]
-    alike = [row for row in rows if all(row[name] == rows[-1][name] for name in SETUP)]
-    return list({row["scene"]: row for row in alike}.values())
+    return records.newest([row for row in load() if OURS in row["modes"]], SETUP)
 
 
 def median_of(row: Row, mode: str, name: str) -> float:

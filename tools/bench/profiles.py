@@ -77,9 +77,7 @@ def load() -> list[Row]:
 
 def newest() -> list[Row]:
     """Returns the last row of each scene, of those that were measured like the last one of all."""
-    rows = load()
-    alike = [row for row in rows if all(row[name] == rows[-1][name] for name in SETUP)]
-    return list({row["scene"]: row for row in alike}.values())
+    return records.newest(load(), SETUP)
 
 
 def main() -> None:

@@ -24,6 +24,12 @@ def read(file: Path) -> list[Row]:
     return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
 
 
+def newest(rows: list[Row], setup: tuple[str, ...]) -> list[Row]:
+    """Returns the last row of each scene, of those that agree with the last row of all in the columns `setup`."""
+    alike = [row for row in rows if all(row[name] == rows[-1][name] for name in setup)]
+    return list({row["scene"]: row for row in alike}.values())
+
+
 def append(row: Row, file: Path) -> None:
     file.parent.mkdir(parents=True, exist_ok=True)
     with file.open("a") as opened:
