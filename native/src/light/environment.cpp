@@ -113,11 +113,13 @@ float row_sine(uint32_t y, uint32_t height) { return std::sin(kPi * (float(y) + 
 float mean_over_sphere(const std::vector<float>& values, uint32_t width) {
   const uint32_t height = width / 2;
   double sum = 0.0, weight = 0.0;
-  for (uint32_t y = 0; y < height; ++y)
+  for (uint32_t y = 0; y < height; ++y) {
+    const float sine = row_sine(y, height);
     for (uint32_t x = 0; x < width; ++x) {
-      sum += double(values[size_t(y) * width + x]) * row_sine(y, height);
-      weight += row_sine(y, height);
+      sum += double(values[size_t(y) * width + x]) * sine;
+      weight += sine;
     }
+  }
   return float(sum / weight);
 }
 
@@ -127,15 +129,17 @@ float mean_over_sphere(const std::vector<float>& values, uint32_t width) {
 std::vector<float> weights(const std::vector<float>& values, uint32_t width, float mean) {
   const uint32_t height = width / 2;
   std::vector<float> out(values.size());
-  for (uint32_t y = 0; y < height; ++y)
+  for (uint32_t y = 0; y < height; ++y) {
+    const float sine = row_sine(y, height);
     for (uint32_t x = 0; x < width; ++x) {
       const auto at = [&](uint32_t cx, uint32_t cy) { return values[size_t(cy) * width + cx]; };
       float around = std::max(at((x + 1) % width, y), at((x + width - 1) % width, y));
       if (y > 0) around = std::max(around, at(x, y - 1));
       if (y + 1 < height) around = std::max(around, at(x, y + 1));
       const float here = at(x, y);
-      out[size_t(y) * width + x] = (std::max(here, 0.25f * around) + 0.01f * mean) * row_sine(y, height);
+      out[size_t(y) * width + x] = (std::max(here, 0.25f * around) + 0.01f * mean) * sine;
     }
+  }
   return out;
 }
 

@@ -83,11 +83,9 @@ class PathTracer {
   void want(uint32_t components) { wanted_ = components; }
 
   // Traces the path through a position on the full frame's film, pixel filter included. `known` is the vertex that the
-  // camera ray meets, if it is known. What the camera sees directly, features included, is the mean over the path's
-  // camera ray and `further` ones, which have no path. The result is valid until the next path.
-  const PathResult& li(const Sampler& sampler, const Vec2& film, CameraVertex* known = nullptr,
-                       std::span<const CameraRay> further = {}) {
-    start(sampler, film, known, further);
+  // camera ray meets, if it is known. The result is valid until the next path.
+  const PathResult& li(const Sampler& sampler, const Vec2& film, CameraVertex* known = nullptr) {
+    start(sampler, film, known);
     extend_path();
     return result_;
   }
@@ -113,8 +111,10 @@ class PathTracer {
     return result_;
   }
 
-  // Starts the path of li(). The steps below extend it, in this order and in a loop, until one of them returns false:
-  // then the path has ended, and result() is complete. Paths that take their steps in turn are faster (path/batch.h).
+  // Starts the path of li(). What the camera sees directly, features included, is the mean over the path's camera ray
+  // and `further` ones, which have no path. The steps below extend the path, in this order and in a loop, until one of
+  // them returns false: then the path has ended, and result() is complete. Paths that take their steps in turn are
+  // faster (path/batch.h).
   void start(const Sampler& sampler, const Vec2& film, CameraVertex* known = nullptr,
              std::span<const CameraRay> further = {}) {
     start_result();
