@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "base/lanes.h"
 #include "base/types.h"
-#include "shading/lanes.h"
 
 namespace gradus::shading {
 
