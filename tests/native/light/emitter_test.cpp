@@ -212,9 +212,72 @@ TEST(A4_LightChoice, FrequenciesFollowProbabilities) {
       chi2 += (frequency[i] - expected) * (frequency[i] - expected) / expected;
       ++cells;
     }
-    ASSERT_GT(cells, 10);
+    ASSERT_GT(cells, 5);
     // The statistic has the mean `cells` and the variance 2·cells: the bound is five standard deviations.
     EXPECT_LT(chi2, cells + 5.0 * std::sqrt(2.0 * cells));
+  }
+}
+
+// Evenly spaced numbers meet each light as often as its probability says, and sample() writes the bits of
+// probability(). The numbers of lights are those around full and partly filled nodes of one, two and three levels.
+TEST(A4_LightChoice, SamplesAgreeWithProbabilities) {
+  std::mt19937 random(18);
+  for (const uint32_t lights : {1u, 2u, 7u, 8u, 9u, 20u, 63u, 65u, 600u}) {
+    std::vector<light::LightBounds> bounds(lights);
+    for (uint32_t i = 0; i < lights; ++i) {
+      light::AnalyticLight light;
+      light::make_analytic_light(random_lights(random, 4, false)[i % 4], Vec3(0.0f), &light);
+      bounds[i] = light::light_bounds(light);
+    }
+    light::LightTree tree;
+    tree.build(bounds, [] { return false; });
+    ASSERT_EQ(tree.size(), lights);
+    for (int k = 0; k < 20; ++k) {
+      const light::Receiver receiver = random_receiver(random);
+      const light::LightTree::Cut cut = tree.cut(receiver);
+      constexpr int kCount = 20000;
+      std::vector<int> frequency(lights);
+      for (int i = 0; i < kCount; ++i) {
+        double probability;
+        const uint32_t light = tree.sample(receiver, cut, (i + 0.5) / kCount, &probability);
+        ASSERT_EQ(probability, tree.probability(light, receiver, cut));
+        ++frequency[light];
+      }
+      double sum = 0.0;
+      for (uint32_t i = 0; i < lights; ++i) {
+        const double probability = tree.probability(i, receiver, cut);
+        EXPECT_NEAR(frequency[i], probability * kCount, 1.01);
+        sum += probability;
+      }
+      EXPECT_NEAR(sum, 1.0, 1e-12);
+    }
+  }
+}
+
+// Up to eight lights are chosen by their own bounds, a tenth of the samples equally.
+TEST(A4_LightChoice, FewLightsAreChosenByTheirIrradiance) {
+  std::mt19937 random(19);
+  for (int lights = 2; lights <= 8; ++lights) {
+    std::vector<light::LightBounds> bounds;
+    for (int i = 0; i < lights; ++i) {
+      light::AnalyticLight light;
+      light::make_analytic_light(make_light(GRADUS_LIGHT_POINT, random_pose(random, 5.0f), Rgb(float(i + 1))),
+                                 Vec3(0.0f), &light);
+      bounds.push_back(light::light_bounds(light));
+    }
+    light::LightTree tree;
+    tree.build(bounds, [] { return false; });
+    const light::Receiver receiver{random_receiver(random).position, Vec3(0.0f), false};
+    std::vector<double> irradiance;
+    double sum = 0.0;
+    for (const light::LightBounds& b : bounds) {
+      const Vec3 d = b.lower - receiver.position;
+      irradiance.push_back(double(b.power) / double(glm::dot(d, d)));
+      sum += irradiance.back();
+    }
+    EXPECT_NEAR(tree.cut(receiver).irradiance() / sum, 1.0, 1e-5);
+    for (int i = 0; i < lights; ++i)
+      EXPECT_NEAR(tree.probability(uint32_t(i), receiver), 0.9 * irradiance[size_t(i)] / sum + 0.1 / lights, 1e-5);
   }
 }
 
