@@ -588,6 +588,7 @@ class Settings(Struct):
         ("seed", c_uint32),
         ("frame", c_int32),
         ("integrator", c_uint32),
+        ("use_guiding", c_uint32),
         ("reconstruction", c_uint32),
         ("reconstruction_alpha", c_float),
         ("max_bounces", c_uint32),

@@ -128,7 +128,7 @@ def limit_preview(result: native.Settings, samples: int) -> None:
     result.samples = min(result.samples, samples)
     result.threads = max(1, store.process_cpu_threads() // 2)
     result.denoiser = native.Denoiser.NONE
-    result.strict = False
+    result.strict = result.use_guiding = False
 
 
 def region_of(render: Any, width: int, height: int) -> tuple[int, int, int, int]:

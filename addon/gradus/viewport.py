@@ -115,7 +115,7 @@ class View:
         settings = renderer.native_settings(self.session.library, scene, layer, options.Overrides(), is_final=False)
         settings.samples = scene.gradus.preview_samples
         settings.noise_threshold = settings.time_limit = 0.0
-        settings.strict = False
+        settings.strict = settings.use_guiding = False
         settings.integrator, settings.denoiser = Integrator.PATH, Denoiser.NONE
         settings.reconstruction = _reconstruction(scene.gradus)
         settings.threads = max(1, store.process_cpu_threads() - 1)  # leaves one thread to the interface

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 FOLDERS = (
-    "base", "schema", "image", "compare", "geometry", "camera", "bsdf", "shading", "light", "scene", "lpe",
+    "base", "schema", "image", "compare", "geometry", "camera", "guide", "bsdf", "shading", "light", "scene", "lpe",
     "film", "film_io", "path", "integrator", "gradient", "reconstruct", "motion", "output", "render", "animation",
     "api",
 )  # fmt: skip

@@ -74,6 +74,7 @@ class GRADUS_RENDER_PT_method(RenderPanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         layout, settings = self.columns(), context.scene.gradus
         layout.prop(settings, "integrator")
+        layout.prop(settings, "use_guiding")
         column = layout.column()
         column.prop(settings, "reconstruction")
         if settings.reconstruction in automatic.FROM_GRADIENTS:

@@ -23,6 +23,22 @@ inline void store_lanes(FloatLanes x, std::span<float, kLanes> values) { _mm256_
 inline FloatLanes minimum(FloatLanes a, FloatLanes b) { return (FloatLanes)_mm256_min_ps((__m256)a, (__m256)b); }
 inline FloatLanes maximum(FloatLanes a, FloatLanes b) { return (FloatLanes)_mm256_max_ps((__m256)a, (__m256)b); }
 inline FloatLanes absolute(FloatLanes x) { return (FloatLanes)((Lanes)x & 0x7fffffffu); }
+// Returns the nearest integers.
+inline FloatLanes nearest_integers(FloatLanes x) {
+  return (FloatLanes)_mm256_round_ps((__m256)x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+}
+// Returns 2 to the power of integers from -126 to 127.
+inline FloatLanes power_of_two(FloatLanes integers) {
+  const auto exponents = (SignedLanes)_mm256_cvtps_epi32((__m256)integers);
+  return (FloatLanes)((exponents + 127) << 23);
+}
+// Returns the sum of the lanes.
+inline float sum_of_lanes(FloatLanes lanes) {
+  const __m256 x = (__m256)lanes;
+  __m128 sum = _mm_add_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
+  sum = _mm_add_ps(sum, _mm_movehl_ps(sum, sum));
+  return _mm_cvtss_f32(_mm_add_ss(sum, _mm_movehdup_ps(sum)));
+}
 // Returns a mask with bit k set where lane k of a comparison is true.
 inline uint32_t mask_of(SignedLanes comparison) {
   return static_cast<uint32_t>(_mm256_movemask_ps((__m256)comparison));

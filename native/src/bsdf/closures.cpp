@@ -272,6 +272,7 @@ void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughn
   geometric_normal_ = geometric_normal;
   smooth_normal_ = smooth_normal;
   blur_ = blur;
+  guided_share_ = 0.0f;
   entry_count_.fill(0);
   dirac_count_.fill(0);
   has_smooth_.fill(false);

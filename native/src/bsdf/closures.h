@@ -10,6 +10,7 @@
 
 #include "base/types.h"
 #include "gradus/gradus.h"
+#include "guide/guiding_field.h"
 
 namespace gradus::bsdf {
 
@@ -180,10 +181,11 @@ struct BsdfSample {
   Rgb value = Rgb(0.0f);  // f·|cos| of the class's smooth lobes together, or the coefficient of a Dirac lobe
   float pdf = 0.0f;       // p(wi | class), or the discrete probability of a Dirac lobe within the class
   bool dirac = false;
-  bool transmitted = false;  // whether wi is on the other side of the geometric surface
-  uint8_t lobe = 0;          // index of the sampled lobe
-  bool diffuse = false;      // whether the sampled lobe makes a diffuse bounce
-  BsdfEval kind;             // value and density of the class's lobes of that kind; value and pdf for a Dirac lobe
+  bool transmitted = false;   // whether wi is on the other side of the geometric surface
+  uint8_t lobe = 0;           // index of the sampled lobe
+  bool diffuse = false;       // whether the sampled lobe makes a diffuse bounce
+  float unguided_pdf = 0.0f;  // `pdf` if no direction were guided
+  BsdfEval kind;              // value and density of the class's lobes of that kind; value and pdf for a Dirac lobe
 };
 
 // Returns the directional albedo of one lobe before finish(), including its weight, for the layers below it. It ignores
@@ -220,6 +222,13 @@ class Closures {
   // change it.
   void set_shading_normals(uint32_t version) { shading_normals_ = version; }
 
+  // Lets diffuse lobes of class Diffuse take the guide's share of their directions from what lights the surface at
+  // `position`, until the next finish(). Densities include that share.
+  void guide_by(const guide::Guide& guide, const Vec3& position) {
+    guide.places.see_from(position, geometric_normal_, &guide_);
+    guided_share_ = guide.share;
+  }
+
   int count() const { return count_; }
   const Lobe& lobe(int i) const { return lobes_[i]; }
   bool empty() const { return count_ == 0; }
@@ -245,8 +254,8 @@ class Closures {
   // Chooses a lobe of class Subsurface by u in [0, 1). Returns its index, and its probability within the class.
   int choose_subsurface(float u, float* probability) const;
 
-  // Returns the density of a direction among all smooth lobes, whatever their class.
-  float direction_pdf(const Vec3& wo, const Vec3& wi) const;
+  // Returns the density of a direction among all smooth lobes, whatever their class, if no direction were guided.
+  float unguided_pdf(const Vec3& wo, const Vec3& wi) const;
   // Returns the sum of all smooth lobes of one class.
   BsdfEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const;
   // Returns that sum, and separately the sum of the lobes whose bounces are diffuse, or not, as `diffuse` says.
@@ -324,6 +333,8 @@ class Closures {
   float terminator_frequency_ = 1.0f;
   uint32_t shading_normals_ = GRADUS_SHADING_NORMALS_SINCE_4_5;
   float blur_ = 0.0f;
+  float guided_share_ = 0.0f;
+  guide::DirectionMixture guide_;  // set if there is a guided share
 };
 
 // Returns whether a lobe scatters within a class. Glass belongs to reflection and transmission.

@@ -55,6 +55,9 @@ bool is_diffuse(const Lobe& lobe) { return lobe.pass == LightPass::Diffuse; }
   return functions_of(lobe).evaluate(lobe, frame.to_local(wo), frame.to_local(wi), sides);
 }
 
+// Returns whether a lobe takes directions from the guide. Narrower lobes find their light by themselves.
+bool may_be_guided(const Lobe& lobe) { return lobe.type == LobeType::Diffuse; }
+
 float stay_below_one(float u) { return std::min(u, 0.99999994f); }
 
 }  // namespace
@@ -85,35 +88,40 @@ inline bool Closures::crosses(const Vec3& wi) const { return glm::dot(geometric_
   return eval;
 }
 
-// Calls add(lobe, evaluation) for each smooth entry of a class.
+// Calls add(lobe, evaluation, density without the guide) for each smooth entry of a class.
 template <class Add>
 [[gnu::always_inline]] inline void Closures::for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi,
                                                         bool transmitted, Add&& add) const {
   const size_t k = static_cast<size_t>(c);
+  const bool is_guided = guided_share_ > 0.0f && c == ScatterClass::Diffuse;
+  const float guided_pdf = is_guided ? guide_.pdf(wi) : 0.0f;
   for (int i = 0; i < entry_count_[k]; i++) {
     const Entry& entry = entries_[k][static_cast<size_t>(i)];
-    if (!entry.dirac) {
-      add(lobes_[entry.lobe], evaluate_entry(entry, wo, wi, transmitted));
-    }
+    if (entry.dirac) continue;
+    const Lobe& lobe = lobes_[entry.lobe];
+    BsdfEval eval = evaluate_entry(entry, wo, wi, transmitted);
+    const float unguided_pdf = eval.pdf;
+    if (is_guided && may_be_guided(lobe)) eval.pdf += guided_share_ * (guided_pdf * entry.probability - unguided_pdf);
+    add(lobe, eval, unguided_pdf);
   }
 }
 
 BsdfEval Closures::evaluate_side(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const {
   BsdfEval sum;
-  for_smooth(c, wo, wi, transmitted, [&](const Lobe&, const BsdfEval& part) {
+  for_smooth(c, wo, wi, transmitted, [&](const Lobe&, const BsdfEval& part, float) {
     sum.value += part.value;
     sum.pdf += part.pdf;
   });
   return sum;
 }
 
-float Closures::direction_pdf(const Vec3& wo, const Vec3& wi) const {
+float Closures::unguided_pdf(const Vec3& wo, const Vec3& wi) const {
   float pdf = 0.0f;
   for (int c = 0; c < kPathEvents; c++) {
     const auto k = static_cast<ScatterClass>(c);
-    if (has_smooth(k)) {
-      pdf += class_probability(k) * evaluate(k, wo, wi).pdf;
-    }
+    float of_class = 0.0f;
+    for_smooth(k, wo, wi, crosses(wi), [&](const Lobe&, const BsdfEval&, float part) { of_class += part; });
+    pdf += class_probability(k) * of_class;
   }
   return pdf;
 }
@@ -124,7 +132,7 @@ BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) cons
 
 KindEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool diffuse) const {
   KindEval sum;
-  for_smooth(c, wo, wi, crosses(wi), [&](const Lobe& lobe, const BsdfEval& part) {
+  for_smooth(c, wo, wi, crosses(wi), [&](const Lobe& lobe, const BsdfEval& part, float) {
     sum.all.value += part.value;
     sum.all.pdf += part.pdf;
     if (is_diffuse(lobe) == diffuse) {
@@ -138,7 +146,7 @@ KindEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi, bool
 std::array<Rgb, 3> Closures::evaluate_by_pass(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted) const {
   std::array<Rgb, 3> sum{Rgb(0.0f), Rgb(0.0f), Rgb(0.0f)};
   for_smooth(c, wo, wi, transmitted,
-             [&](const Lobe& lobe, const BsdfEval& part) { sum[pass_of(lobe, transmitted)] += part.value; });
+             [&](const Lobe& lobe, const BsdfEval& part, float) { sum[pass_of(lobe, transmitted)] += part.value; });
   return sum;
 }
 
@@ -164,6 +172,7 @@ bool Closures::evaluate_dirac(int index, const Vec3& wo, bool transmitted, BsdfS
     out->transmitted = transmitted;
     out->lobe = static_cast<uint8_t>(index);
     out->diffuse = is_diffuse(source);
+    out->unguided_pdf = out->pdf;
     out->kind = {out->value, out->pdf};
     return crosses(out->wi) == transmitted;
   }
@@ -186,7 +195,7 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   if (entry_count_[k] == 0 || c == ScatterClass::Subsurface) {
     return false;
   }
-  // u_lobe chooses the entry; its remainder, scaled to [0, 1), chooses the side.
+  // u_lobe chooses the entry; its remainder, scaled to [0, 1), chooses the side, or whether the direction is guided.
   int chosen = 0;
   float remaining = u_lobe;
   while (chosen < entry_count_[k] - 1 && remaining >= entries_[k][static_cast<size_t>(chosen)].probability) {
@@ -198,17 +207,22 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   }
   const Lobe& source = lobes_[entry.lobe];
   const Frame3 frame = make_frame(source.normal, source.tangent);
+  const float u_entry = stay_below_one(remaining / entry.probability);
   Vec3 local;
-  if (!functions_of(source).sample(source, frame.to_local(wo), stay_below_one(remaining / entry.probability), u,
-                                   entry.sides, &local)) {
+  if (guided_share_ > 0.0f && c == ScatterClass::Diffuse && may_be_guided(source) && u_entry < guided_share_) {
+    out->wi = renormalise(guide_.sample(u_entry / guided_share_, u));
+  } else if (functions_of(source).sample(source, frame.to_local(wo), u_entry, u, entry.sides, &local)) {
+    out->wi = renormalise(frame.to_world(local));
+  } else {
     return false;
   }
-  out->wi = renormalise(frame.to_world(local));
   out->diffuse = is_diffuse(source);
+  out->unguided_pdf = 0.0f;
   BsdfEval all, kind;
-  for_smooth(c, wo, out->wi, crosses(out->wi), [&](const Lobe& lobe, const BsdfEval& part) {
+  for_smooth(c, wo, out->wi, crosses(out->wi), [&](const Lobe& lobe, const BsdfEval& part, float unguided_pdf) {
     all.value += part.value;
     all.pdf += part.pdf;
+    out->unguided_pdf += unguided_pdf;
     if (is_diffuse(lobe) == out->diffuse) {
       kind.value += part.value;
       kind.pdf += part.pdf;
@@ -225,7 +239,7 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
 
 bool Closures::transmits_clearly(ScatterClass c, const Vec3& wo, const Vec3& wi, float limit) const {
   float clear = 0.0f, rough = 0.0f;
-  for_smooth(c, wo, wi, true, [&](const Lobe& lobe, const BsdfEval& part) {
+  for_smooth(c, wo, wi, true, [&](const Lobe& lobe, const BsdfEval& part, float) {
     const bool is_clear = is_microfacet(lobe.type) && lobe.alpha_x * lobe.alpha_y <= limit;
     (is_clear ? clear : rough) += mean_component(part.value);
   });

@@ -35,7 +35,7 @@ float FilterGlossy::blur_behind(const bsdf::Closures& closures, const Vec3& wo, 
   if (!(widest_ > 0.0f) || closures.ignores_wo()) {
     return widest_;
   }
-  return blur_of(closures.direction_pdf(wo, wi));
+  return blur_of(closures.unguided_pdf(wo, wi));
 }
 
 }  // namespace gradus::path

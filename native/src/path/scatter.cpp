@@ -73,7 +73,8 @@ float survive(const VertexSample& u, PathState* state) {
   if (state->depth < 2) {
     return 1.0f;
   }
-  const float probability = std::min(1.0f, std::sqrt(std::max(0.0f, max_component(state->throughput))));
+  const float probability =
+      std::min(1.0f, std::sqrt(std::max(0.0f, max_component(state->throughput) * state->roulette_factor)));
   if (probability < 1.0f && !(u.roulette.x < probability)) {
     return 0.0f;
   }
@@ -105,6 +106,7 @@ bool scatter(const PathContext& context, const VertexSample& u, const Vertex& ve
                         : is_clear(event->glass_limit, vertex, event->scatter_class, sample.wi, sample.transmitted);
   state->ray.state.glass_depth += event->is_clear ? 1 : 0;
   state->throughput *= event->factor;
+  if (sample.unguided_pdf > 0.0f) state->roulette_factor *= sample.pdf / sample.unguided_pdf;
   ++state->depth;
   state->lpe_state = context.components.next(state->lpe_state, event->scatter_class);
   leave_surface(vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac,

@@ -12,6 +12,9 @@ inline bool shows_background(const shading::RayState& ray) { return ray.glass_de
 struct PathState {
   PathRay ray;
   Rgb throughput = Rgb(1.0f);
+  // Factor of the throughput in the probability of Russian roulette: that without guided directions over that with
+  // them. A guided path has a low throughput because it leads to much light.
+  float roulette_factor = 1.0f;
   int depth = 0;                // number of scattering events so far
   bool emission_only = false;   // the bounce limits are reached: the path ends with the emission of the next vertex
   lpe::LpeState lpe_state = 0;  // light path expression state after these events

@@ -13,6 +13,7 @@
 #include "render/batches.h"
 #include "render/develop.h"
 #include "render/edge_sampling.h"
+#include "render/guiding.h"
 #include "render/memory_estimate.h"
 #include "render/resume.h"
 #include "render/small_components.h"
@@ -116,6 +117,26 @@ void RenderLoop::render() {
   develop_film(denoises);
 }
 
+void RenderLoop::learn_guide() {
+  const GradusSettings& settings = input_.settings;
+  std::string why_not = input_.meets_replays() ? "samples are replayed in other frames" : "";
+  const uint32_t samples = net_samples() > 0 ? net_samples() : settings.samples;
+  const uint32_t paths = guide_paths(settings, samples, plan_.delivered, &why_not);
+  if (paths == 0) {
+    stats_.skipped.emplace_back("path guiding", why_not);
+    return;
+  }
+  const integrator::IntegratorContext context{
+      input_.snapshot, camera::Camera(input_.snapshot->camera, settings.width, settings.height), settings};
+  std::atomic<uint64_t> cpu{0};
+  integrator::GuideTraining training;
+  arena_.execute([&] { training = integrator::train_guide(context, paths, stop_, &cpu); });
+  stats_.cpu_seconds.sample += 1e-9 * double(cpu.load());
+  check_cancelled();
+  explain(training, &stats_.chosen, &stats_.skipped);
+  if (training.field) input_.snapshot = integrator::guided_snapshot(*input_.snapshot, training.field);
+}
+
 GradientMap RenderLoop::choose_gradients() {
   GradientMap map;
   map.share = plan_.gradients ? 1.0 : 0.0;
@@ -155,6 +176,7 @@ void RenderLoop::prepare() {
   if (GRADUS_FAULT(library_leaks_memory)) std::fill_n(new char[1 << 20], 1 << 20, char(1));
   gradients_ = choose_gradients();
   components_ = choose_components();
+  learn_guide();  // behind the choices above, which do not depend on the number of samples
   const bool has_lost_gradients = plan_.gradients && gradients_.none();
   const uint32_t integrator = has_lost_gradients ? uint32_t{GRADUS_INTEGRATOR_PATH} : plan_.integrator;
   if (plan_.pilot) explain(gradients_, &stats_.chosen, &stats_.skipped);

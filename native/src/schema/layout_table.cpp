@@ -257,6 +257,7 @@ constexpr FieldLayout kSettingsFields[] = {
     FIELD(GradusSettings, seed),
     FIELD(GradusSettings, frame),
     FIELD(GradusSettings, integrator),
+    FIELD(GradusSettings, use_guiding),
     FIELD(GradusSettings, reconstruction),
     FIELD(GradusSettings, reconstruction_alpha),
     FIELD(GradusSettings, max_bounces),

@@ -36,23 +36,27 @@ void run_noting_faults(const Program& program, const ShadeContext& context, Shad
 }
 
 // Finishes the closures of a result after all have been added.
-void complete(const MaterialData& material, const geometry::SurfacePoint& point, const Vec3& geometric_normal,
-              const Vec3& normal, const Vec3& wo, float roughness_threshold, float blur, ShadeResult* result) {
+void complete(const ShadedScene& scene, const MaterialData& material, const geometry::SurfacePoint& point,
+              const Vec3& geometric_normal, const Vec3& normal, const Vec3& wo, float roughness_threshold, float blur,
+              ShadeResult* result) {
   result->closures.set_terminator_frequency(point.terminator_frequency);
   result->closures.set_shading_normals(material.shading_normals);
   result->closures.finish(wo, geometric_normal, roughness_threshold, normal, blur);
   result->ignores_wo = !material.values_depend_on_ray && result->closures.ignores_wo();
   result->complete = true;
+  if (!scene.guiding || !result->closures.has_smooth(bsdf::ScatterClass::Diffuse)) return;
+  if (const guide::Guide* guide = scene.guiding->at(point.position, geometric_normal); guide != nullptr)
+    result->closures.guide_by(*guide, point.position);
 }
 
 // A fast path for materials with is_lambert. The result is that of their program.
-void shade_lambert(const MaterialData& material, const geometry::SurfacePoint& point, const Vec3& wo,
-                   float roughness_threshold, ShadeResult* result) {
+void shade_lambert(const ShadedScene& scene, const MaterialData& material, const geometry::SurfacePoint& point,
+                   const Vec3& wo, float roughness_threshold, ShadeResult* result) {
   bsdf::Lobe* lobe = result->closures.add();
   *lobe = material.lambert;
   lobe->normal = point.shading_normal;
   const bool backfacing = glm::dot(point.geometric_normal, wo) < 0.0f;
-  complete(material, point, backfacing ? -point.geometric_normal : point.geometric_normal,
+  complete(scene, material, point, backfacing ? -point.geometric_normal : point.geometric_normal,
            backfacing ? -point.shading_normal : point.shading_normal, wo, roughness_threshold, 0.0f, result);
 }
 
@@ -93,11 +97,11 @@ void shade_surface(const ShadedScene& scene, const geometry::SurfacePoint& point
   result->fallback = material.uses_fallback;
   // A Lambert surface is not recorded on the tape. It does not depend on the direction on this side, and shading it
   // again for the other side is as fast as a replay.
-  if (material.is_lambert) return shade_lambert(material, point, wo, roughness_threshold, result);
+  if (material.is_lambert) return shade_lambert(scene, material, point, wo, roughness_threshold, result);
   const ShadeContext context = context_of(material, material.bumps, scene, point, wo, ray);
   run_noting_faults(material.surface, context, result);
   if (result->tape) result->tape->finish();
-  complete(material, point, context.geometric_normal, context.normal, wo, roughness_threshold, ray.blur, result);
+  complete(scene, material, point, context.geometric_normal, context.normal, wo, roughness_threshold, ray.blur, result);
 }
 
 void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& point, const ClosureTape& tape,
@@ -113,7 +117,7 @@ void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& poi
   }
   if (result->is_faulty) note_fault(context);
   result->fallback = material.uses_fallback;
-  complete(material, point, context.geometric_normal, context.normal, wo, roughness_threshold, ray.blur, result);
+  complete(scene, material, point, context.geometric_normal, context.normal, wo, roughness_threshold, ray.blur, result);
 }
 
 void shade_without_closures(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/geometry.h"
+#include "guide/guiding_field.h"
 
 namespace gradus::image {
 class ImageStore;  // image/image_store.h
@@ -21,6 +22,7 @@ class ShadedScene : public geometry::Geometry {
   std::vector<std::shared_ptr<const MaterialData>> materials;  // the first is the default material
   std::shared_ptr<FaultyMaterials> faulty_materials;           // of all renders of the snapshot; null: none are noted
   std::shared_ptr<const image::ImageStore> images;
+  std::shared_ptr<const guide::GuidingField> guiding;  // null: no directions are guided
   GradusCamera camera{};  // in internal space; its arrays belong to Snapshot::camera_keys
   bool has_camera = false;
   GradusWorld world{};

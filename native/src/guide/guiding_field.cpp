@@ -1,0 +1,141 @@
+#include "guide/guiding_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include <tbb/parallel_for.h>
+
+namespace gradus::guide {
+namespace {
+
+// A cell with more samples than this is divided.
+constexpr size_t kMaxSamples = 4096;
+// A cell with fewer is not guided.
+constexpr size_t kMinSamples = 64;
+// Differences of normals count as this share of the cell's diagonal.
+constexpr float kNormalScale = 0.75f;
+// Maximum distance of a place, in diagonals of the cell: behind that the place has no parallax.
+constexpr float kFar = 1e3f;
+// A cell is guided if the second moment of its samples becomes smaller than this times that without a guide.
+constexpr double kMaxMoment = 0.95;
+// Shares of guided directions among which a cell chooses.
+constexpr std::array<double, 3> kShares = {0.25, 0.5, 0.75};
+// Densities of the samples below this count as this.
+constexpr float kMinPdf = 1e-3f;
+
+float coordinate(const Vec3& position, const Vec3& normal, uint32_t axis) {
+  return axis < 3 ? position[int(axis)] : normal[int(axis) - 3];
+}
+float coordinate(const TrainingSample& s, uint32_t axis) { return coordinate(s.position, s.normal, axis); }
+
+using Samples = std::span<const TrainingSample>;
+
+Vec3 mean_of(Samples samples, Vec3 TrainingSample::*member) {
+  glm::dvec3 sum(0.0);
+  for (const TrainingSample& s : samples) sum += glm::dvec3(s.*member);
+  return Vec3(sum / double(samples.size()));
+}
+
+struct Bounds {
+  Vec3 low = Vec3(kInfinity), high = Vec3(-kInfinity);
+  Vec3 size() const { return high - low; }
+};
+Bounds bounds_of(Samples samples, Vec3 TrainingSample::*member) {
+  Bounds b;
+  for (const TrainingSample& s : samples) b.low = glm::min(b.low, s.*member), b.high = glm::max(b.high, s.*member);
+  return b;
+}
+
+// Returns the light of a sample as a point sees it that may be elsewhere in the cell.
+Observation observation_of(const TrainingSample& s, const Vec3& centre, float diagonal) {
+  const Vec3 towards = s.position + s.direction * std::min(s.distance, kFar * diagonal) - centre;
+  const float distance = std::max(glm::length(towards), 1e-3f * diagonal);
+  const float cosine = std::max(glm::dot(s.normal, s.direction), 0.0f);
+  return {towards / std::max(glm::length(towards), 1e-30f), distance, s.radiance * cosine / std::max(s.pdf, kMinPdf)};
+}
+
+// Returns the share of guided directions that has the least second moment of the light that a Lambert surface reflects,
+// estimated by the samples that were not used for the fit; 0 if no share reduces it enough.
+float best_share(const LitPlaces& places, Samples samples) {
+  std::array<double, kShares.size()> moments{};
+  double plain = 0.0;
+  DirectionMixture mixture;
+  for (size_t i = 1; i < samples.size(); i += 2) {
+    const TrainingSample& s = samples[i];
+    const float cosine = glm::dot(s.normal, s.direction);
+    if (!(cosine > 0.0f) || !(s.radiance > 0.0f)) continue;
+    places.see_from(s.position, s.normal, &mixture);
+    const double value = double(s.radiance) * cosine, pdf = cosine * kInvPi, guided_pdf = mixture.pdf(s.direction);
+    const double square = value * value / std::max(s.pdf, kMinPdf);
+    plain += square / pdf;
+    for (size_t k = 0; k < kShares.size(); ++k)
+      moments[k] += square / (kShares[k] * guided_pdf + (1.0 - kShares[k]) * pdf);
+  }
+  const auto best = std::min_element(moments.begin(), moments.end());
+  return *best < kMaxMoment * plain ? float(kShares[size_t(best - moments.begin())]) : 0.0f;
+}
+
+// Returns the guide of a cell with these samples, if guiding pays there.
+std::optional<Guide> fit_guide(Samples samples) {
+  if (samples.size() < kMinSamples) return std::nullopt;
+  const Vec3 centre = mean_of(samples, &TrainingSample::position);
+  const float diagonal = std::max(glm::length(bounds_of(samples, &TrainingSample::position).size()), 1e-6f);
+  std::vector<Observation> all, half;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    all.push_back(observation_of(samples[i], centre, diagonal));
+    if (i % 2 == 0) half.push_back(all.back());
+  }
+  const float share = best_share(LitPlaces(centre, half), samples);
+  if (share == 0.0f) return std::nullopt;
+  return Guide{LitPlaces(centre, all), share};
+}
+
+}  // namespace
+
+GuidingField::GuidingField(std::vector<TrainingSample> samples) {
+  nodes_.emplace_back();
+  std::vector<Leaf> leaves;
+  divide(0, samples, &leaves);
+  std::vector<std::optional<Guide>> guides(leaves.size());
+  tbb::parallel_for(size_t{0}, leaves.size(), [&](size_t i) { guides[i] = fit_guide(leaves[i].samples); });
+  size_t guided = 0;
+  for (size_t i = 0; i < leaves.size(); ++i) {
+    if (!guides[i]) continue;
+    guided += leaves[i].samples.size();
+    nodes_[leaves[i].node].index = uint32_t(guides_.size());
+    guides_.push_back(*guides[i]);
+  }
+  guided_share_ = samples.empty() ? 0.0f : float(guided) / float(samples.size());
+}
+
+void GuidingField::divide(uint32_t node, std::span<TrainingSample> samples, std::vector<Leaf>* leaves) {
+  nodes_[node] = {0.0f, kLeaf, kNone};
+  if (samples.size() <= kMaxSamples) return leaves->push_back({node, samples});
+  const Vec3 size = bounds_of(samples, &TrainingSample::position).size();
+  const Vec3 normal_size = bounds_of(samples, &TrainingSample::normal).size() * (kNormalScale * glm::length(size));
+  const std::array<float, 6> extents{size.x, size.y, size.z, normal_size.x, normal_size.y, normal_size.z};
+  const auto axis = uint32_t(std::max_element(extents.begin(), extents.end()) - extents.begin());
+  const float split =
+      coordinate(mean_of(samples, &TrainingSample::position), mean_of(samples, &TrainingSample::normal), axis);
+  const auto second = std::stable_partition(samples.begin(), samples.end(),
+                                            [&](const TrainingSample& s) { return coordinate(s, axis) < split; });
+  const auto below = size_t(second - samples.begin());
+  if (below == 0 || below == samples.size()) return leaves->push_back({node, samples});
+  const auto first = uint32_t(nodes_.size());
+  nodes_.resize(nodes_.size() + 2);
+  nodes_[node] = {split, axis, first};
+  divide(first, samples.first(below), leaves);
+  divide(first + 1, samples.subspan(below), leaves);
+}
+
+const Guide* GuidingField::at(const Vec3& position, const Vec3& normal) const {
+  const Node* node = nodes_.data();
+  while (node->axis != kLeaf)
+    node = &nodes_[node->index + (coordinate(position, normal, node->axis) < node->split ? 0 : 1)];
+  return node->index == kNone ? nullptr : &guides_[node->index];
+}
+
+}  // namespace gradus::guide

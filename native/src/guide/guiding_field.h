@@ -1,0 +1,62 @@
+// The light that arrives at the surfaces of a scene, learnt from paths, as densities by which to sample directions.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "guide/lit_places.h"
+
+namespace gradus::guide {
+
+// A direction in which a path has left a rough surface, and the radiance that it has found there: an estimate, without
+// what light sampling finds at the surface itself.
+struct TrainingSample {
+  Vec3 position = Vec3(0.0f), normal = Vec3(0.0f);  // the normal is on the side of the path
+  Vec3 direction = Vec3(0.0f);
+  float distance = 0.0f;  // to the next surface; infinite if there is none
+  float pdf = 0.0f;       // density of the direction
+  float radiance = 0.0f;  // mean of the channels
+};
+
+// How surfaces around a point are guided.
+struct Guide {
+  LitPlaces places;
+  // Share of guided directions among those that guided lobes sample, below 1. The rest follow the BSDF, so that a wrong
+  // guide cannot hide light.
+  float share = 0.0f;
+};
+
+// The surfaces are divided into cells with about equally many samples, by position and normal. A cell is guided where
+// that reduces the variance of its samples.
+class GuidingField {
+ public:
+  explicit GuidingField(std::vector<TrainingSample> samples);
+  // Returns the guide of a surface point, whose normal is on the side of the path; null in cells without one.
+  const Guide* at(const Vec3& position, const Vec3& normal) const;
+  // Returns the share of the samples that lie in guided cells.
+  float guided_share() const { return guided_share_; }
+
+ private:
+  // Inner nodes have two consecutive children: the first below `split` on an axis of position (0 to 2) or normal (3 to
+  // 5). Leaves have an index in guides_, or kNone.
+  struct Node {
+    float split = 0.0f;
+    uint32_t axis = 0;
+    uint32_t index = 0;
+  };
+  static constexpr uint32_t kLeaf = 6, kNone = UINT32_MAX;
+
+  struct Leaf {
+    uint32_t node;
+    std::span<const TrainingSample> samples;
+  };
+  // Divides the samples of a node, which it reorders, into leaves.
+  void divide(uint32_t node, std::span<TrainingSample> samples, std::vector<Leaf>* leaves);
+
+  std::vector<Node> nodes_;
+  std::vector<Guide> guides_;
+  float guided_share_ = 0.0f;
+};
+
+}  // namespace gradus::guide
