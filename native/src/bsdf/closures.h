@@ -317,6 +317,8 @@ class Closures {
   template <class Add>
   void for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi, bool transmitted, Add&& add) const;
   bool crosses(const Vec3& wi) const;
+  // Returns whether the guide chooses a share of the directions of a class.
+  bool guides(ScatterClass c) const { return guided_share_ > 0.0f && c == ScatterClass::Diffuse; }
 
   std::array<Lobe, kMaxLobes> lobes_;
   int count_ = 0;

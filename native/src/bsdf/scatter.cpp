@@ -93,7 +93,7 @@ template <class Add>
 [[gnu::always_inline]] inline void Closures::for_smooth(ScatterClass c, const Vec3& wo, const Vec3& wi,
                                                         bool transmitted, Add&& add) const {
   const size_t k = static_cast<size_t>(c);
-  const bool is_guided = guided_share_ > 0.0f && c == ScatterClass::Diffuse;
+  const bool is_guided = guides(c);
   const float guided_pdf = is_guided ? guide_.pdf(wi) : 0.0f;
   for (int i = 0; i < entry_count_[k]; i++) {
     const Entry& entry = entries_[k][static_cast<size_t>(i)];
@@ -209,7 +209,7 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
   const Frame3 frame = make_frame(source.normal, source.tangent);
   const float u_entry = stay_below_one(remaining / entry.probability);
   Vec3 local;
-  if (guided_share_ > 0.0f && c == ScatterClass::Diffuse && may_be_guided(source) && u_entry < guided_share_) {
+  if (guides(c) && may_be_guided(source) && u_entry < guided_share_) {
     out->wi = renormalise(guide_.sample(u_entry / guided_share_, u));
   } else if (functions_of(source).sample(source, frame.to_local(wo), u_entry, u, entry.sides, &local)) {
     out->wi = renormalise(frame.to_world(local));

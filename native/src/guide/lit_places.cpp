@@ -7,11 +7,11 @@
 namespace gradus::guide {
 namespace {
 
+// Steps of expectation maximisation.
 constexpr int kSteps = 8;
-constexpr float kFirstConcentration = 10.0f;
-constexpr float kApart = 0.5f / kFirstConcentration;  // 1 minus the cosine between two lobes at the start
-// Weight of an observation in the opposite direction with which every lobe starts, in observations, so that few
-// observations make no sharp lobe.
+// Concentration of all lobes at the start, and 1 minus the cosine of the minimum angle between them.
+constexpr float kFirstConcentration = 10.0f, kApart = 0.5f / kFirstConcentration;
+// Number of observations without a direction that every lobe has, so that few observations make no sharp lobe.
 constexpr float kPrior = 0.3f;
 constexpr float kWeightPrior = 0.01f;  // weight of each lobe before any observation
 // An observation counts as at most the light of the others over this. Rare bright paths would attract all lobes.

@@ -9,8 +9,8 @@
 
 namespace gradus::render {
 
-// Returns the number of paths to learn from, for a render of `samples` samples per pixel of a region; 0 if it does not
-// guide paths, and then sets `why_not`.
+// Returns the number of paths to learn from, for a render of `samples` samples per pixel of a region. If it does not
+// guide paths, returns 0 and sets `why_not`; it does not if `why_not` has a reason already.
 uint32_t guide_paths(const GradusSettings& settings, uint32_t samples, const Region& region, std::string* why_not);
 
 // Adds what the training has found to `chosen` or `skipped`.
