@@ -1,4 +1,5 @@
 // Plain path tracing: next-event estimation and BSDF sampling, combined by the balance heuristic. Unbiased.
+#include <mutex>
 #include <optional>
 
 #include "integrator/integrator.h"
@@ -13,13 +14,36 @@ namespace {
 // Number of paths that are traced together. With 8 a sample takes as long as with 32.
 constexpr size_t kBatchSize = 32;
 
-// A path of a batch, with memory of its own.
+// Memory of the paths of a batch.
+using BatchScratch = std::array<path::PathScratch, kBatchSize>;
+
+// Memory for one batch of each thread. It is kept from unit to unit, because initialising it takes as long as some
+// samples.
+class ScratchPool {
+ public:
+  std::unique_ptr<BatchScratch> take() {
+    const std::lock_guard lock(mutex_);
+    if (unused_.empty()) return std::make_unique<BatchScratch>();
+    std::unique_ptr<BatchScratch> scratch = std::move(unused_.back());
+    unused_.pop_back();
+    return scratch;
+  }
+  void give_back(std::unique_ptr<BatchScratch> scratch) {
+    const std::lock_guard lock(mutex_);
+    unused_.push_back(std::move(scratch));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<BatchScratch>> unused_;
+};
+
+// A path of a batch.
 struct Lane {
-  Lane(const path::PathContext& context, film::Film* film, film::Counters* counters)
-      : recorder(context, film, counters), tracer(context, &scratch, &recorder, counters, &observer) {}
+  Lane(const path::PathContext& context, path::PathScratch* scratch, film::Film* film, film::Counters* counters)
+      : recorder(context, film, counters), tracer(context, scratch, &recorder, counters, &observer) {}
 
   PixelSample sample;
-  path::PathScratch scratch;
   path::PassRecorder recorder;
   path::NoObserver observer;
   path::PathTracer<path::NoObserver> tracer;
@@ -28,14 +52,16 @@ struct Lane {
 // Samples whose paths are traced together. They are of different pixels, so that sums have one order.
 class Batch {
  public:
-  Batch(const path::PathContext& context, const WorkUnit& unit, film::Film* film, film::Counters* counters)
-      : context_(context), unit_(unit), film_(*film), counters_(*counters) {}
+  Batch(const path::PathContext& context, BatchScratch* scratch, const WorkUnit& unit, film::Film* film,
+        film::Counters* counters)
+      : context_(context), scratch_(*scratch), unit_(unit), film_(*film), counters_(*counters) {}
 
   // Starts the path of a sample.
   void add(const PixelSample& s) {
     if (count_ > 0 && s.number != lanes_[0]->sample.number) finish();
-    std::optional<Lane>& memory = lanes_[count_++];
-    Lane& lane = memory ? *memory : memory.emplace(context_, &film_, &counters_);
+    const size_t i = count_++;
+    std::optional<Lane>& memory = lanes_[i];
+    Lane& lane = memory ? *memory : memory.emplace(context_, &scratch_[i], &film_, &counters_);
     lane.sample = s;
     lane.recorder.begin_sample(s.pixel, s.half, s.number, unit_.adds_components);
     lane.tracer.want(unit_components(unit_, s.pixel));
@@ -56,6 +82,7 @@ class Batch {
 
  private:
   const path::PathContext& context_;
+  BatchScratch& scratch_;
   const WorkUnit& unit_;
   film::Film& film_;
   film::Counters& counters_;
@@ -75,14 +102,17 @@ class PathIntegrator final : public Integrator {
 
   void sample(const WorkUnit& unit, film::Film* film, film::Counters* counters,
               const std::atomic<bool>& stop) const override {
-    const auto batch = std::make_unique<Batch>(path_, unit, film, counters);
+    std::unique_ptr<BatchScratch> scratch = scratches_.take();
+    const auto batch = std::make_unique<Batch>(path_, scratch.get(), unit, film, counters);
     for_each_sample(path_, unit, *film, nullptr, stop, [&](const PixelSample& s) { batch->add(s); });
     batch->finish();
+    scratches_.give_back(std::move(scratch));
   }
 
  private:
   IntegratorContext context_;
   path::PathContext path_;
+  mutable ScratchPool scratches_;
 };
 
 }  // namespace
