@@ -90,14 +90,27 @@ void place_instanced(const InstanceData& instance, const Placement& placement, c
   point->material = material_of_slot(instance, triangle.slot);
 }
 
-void place_at(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
+// Computes the surface point without the shading normal and what depends on the instance alone.
+void place_on_facet(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
   if (instance.is_in_top_level)
     place_flat(instance, hit, point);
   else
     place_instanced(instance, placement, hit, point);
+}
+
+void place_at(const InstanceData& instance, const Placement& placement, const Hit& hit, SurfacePoint* point) {
+  place_on_facet(instance, placement, hit, point);
   set_shading_normal(instance, placement, hit, point);
   point->terminator_frequency = instance.terminator_frequency;
   point->light_set = instance.light_set;
+}
+
+// Calls use(placement) with the placement of an instance at a shutter time.
+template <class Use>
+[[gnu::always_inline]] inline void with_placement(const InstanceData& instance, float time, const Use& use) {
+  if (!instance.keys) return use(instance);
+  Placement storage;
+  use(instance.placement(time, &storage));
 }
 
 // Returns the float next to v in the direction of the sign of `up`, as std::nextafter does for finite v; v if `up` is
@@ -126,9 +139,7 @@ uint32_t Geometry::material_of(uint32_t index, uint32_t primitive) const {
 
 void place(const InstanceData& instance, const Hit& hit, SurfacePoint* point) {
   point->hit = hit;
-  if (!instance.keys) return place_at(instance, instance, hit, point);
-  Placement storage;
-  place_at(instance, instance.placement(hit.time, &storage), hit, point);
+  with_placement(instance, hit.time, [&](const Placement& placement) { place_at(instance, placement, hit, point); });
 }
 
 void Geometry::place(const Hit& hit, SurfacePoint* point) const {
@@ -148,6 +159,14 @@ void Geometry::prefetch(const Hit& hit) const {
 SurfacePoint Geometry::surface_point(const Hit& hit) const {
   SurfacePoint point;
   place(hit, &point);
+  return point;
+}
+
+SurfacePoint Geometry::facet_point(const Hit& hit) const {
+  const InstanceData& instance = instances[hit.instance];
+  SurfacePoint point;
+  point.hit = hit;
+  with_placement(instance, hit.time, [&](const Placement& at) { place_on_facet(instance, at, hit, &point); });
   return point;
 }
 

@@ -62,7 +62,7 @@ void sample_triangle(const LitScene& scene, uint32_t index, const Receiver& rece
   hit.primitive = t.triangle;
   hit.time = receiver.time;
   hit.uv = seen.usable() ? barycentric_towards(corners, receiver.position, seen.sample(u)) : sample_triangle_area(u);
-  set_triangle_point(index, scene.surface_point(hit), point);
+  set_triangle_point(index, scene.facet_point(hit), point);
   finding->solid_angle = seen.sampled_solid_angle();
 }
 
