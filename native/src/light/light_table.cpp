@@ -13,6 +13,7 @@ GroupChoice choose_group(const GroupIrradiance& irradiance, const GroupFactors& 
   GroupChoice choice{irradiance.tree * factors.tree, irradiance.suns * factors.suns, irradiance.world * factors.world};
   const double sum = choice.tree + choice.suns + choice.world;
   if (!(sum > 0.0) || !std::isfinite(sum)) return {};
+  if (choice.tree == sum) return {1.0, 0.0, 0.0};  // the result of the code below, for the most common case
   double* const groups[] = {&choice.tree, &choice.suns, &choice.world};
   double* const largest =
       *std::max_element(std::begin(groups), std::end(groups), [](const double* a, const double* b) { return *a < *b; });
