@@ -109,15 +109,15 @@ Rgb reflected_once(const Lobe& lobe, float cosine) {
 bool only_crosses(const Lobe& lobe) { return sides_of(lobe.type) == kTransmits && lobe.fresnel == FresnelType::None; }
 
 // Returns the single-scattering albedo of the transmission side, without the lobe's weight. For glass with a Schlick
-// term it is the dielectric albedo, scaled to the energy that the Schlick term does not reflect.
-Rgb single_transmission(const Lobe& lobe, float alpha, float cosine) {
+// term it is the dielectric albedo, scaled to the energy that the Schlick term does not reflect. `reflected` is
+// single_reflection().
+Rgb single_transmission(const Lobe& lobe, float alpha, float cosine, const Rgb& reflected) {
   const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
   if (only_crosses(lobe)) {
     return Rgb(glass.crossing) * lobe.transmission_tint;
   }
   const bool coloured = lobe.fresnel == FresnelType::Schlick || lobe.fresnel == FresnelType::FilmDielectric;
   if (coloured && glass.transmitted > 0.0f) {
-    const Rgb reflected = single_reflection(lobe, alpha, cosine);
     const Rgb share = (Rgb(glass.reflected + glass.transmitted) - reflected) / glass.transmitted;
     return glm::clamp(share, 0.0f, 1.0f / std::max(glass.transmitted, 1e-3f)) * glass.transmitted *
            lobe.transmission_tint;
@@ -207,11 +207,13 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
       return {scale * reflected_once(lobe, cosine), Rgb(0.0f)};
     case LobeType::GgxRefraction:
     case LobeType::BeckmannRefraction:
-      return {Rgb(0.0f), scale * single_transmission(lobe, mean_alpha(lobe), cosine)};
     case LobeType::GgxGlass:
-    case LobeType::BeckmannGlass:
-      return {scale * single_reflection(lobe, mean_alpha(lobe), cosine),
-              scale * single_transmission(lobe, mean_alpha(lobe), cosine)};
+    case LobeType::BeckmannGlass: {
+      const float alpha = mean_alpha(lobe);
+      const Rgb reflected = only_crosses(lobe) ? Rgb(0.0f) : single_reflection(lobe, alpha, cosine);
+      return {sides_of(lobe.type) & kReflects ? scale * reflected : Rgb(0.0f),
+              scale * single_transmission(lobe, alpha, cosine, reflected)};
+    }
     default:
       return dirac_albedo(lobe, cosine);
   }
