@@ -364,6 +364,7 @@ class PathTracer {
       add_transparency(holdout_alpha(state_.throughput, vertex_->shade.holdout));
     }
     if (recorder_ != nullptr) recorder_->surface(state_, *vertex_, *segment_);
+    if (is_black(vertex_->shade.emission)) return true;
     const Contribution c = shared(emission_contribution(context_, source, state_, *vertex_));
     if (recorder_ != nullptr) recorder_->record_emission(c.component, c.light);
     if (!is_black(c.clamped)) {
@@ -400,6 +401,7 @@ class PathTracer {
     const LightVisibility visibility =
         light_visibility(context_, vertex_->point, light.point, light.view, arrival_.ray.state.transparent_depth);
     for (int k = 0; k < bsdf::kPathEvents && !is_black(visibility.transmittance); ++k) {
+      if (is_black(lit[k].value)) continue;
       const auto scatter_class = static_cast<bsdf::ScatterClass>(k);
       const Contribution c = light_contribution(context_, arrival_, light, scatter_class, lit[k], visibility);
       if (!is_black(c.clamped)) {
