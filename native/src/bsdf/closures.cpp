@@ -190,6 +190,13 @@ void Closures::add_entry(int lobe, uint8_t sides, ScatterClass c, float weight) 
 
 void Closures::add_entries(int index, const Vec3& wo, float roughness_threshold) {
   Lobe& lobe = lobes_[static_cast<size_t>(index)];
+  if (lobe.type == LobeType::Diffuse && lobe.disney != DisneyPart::RetroReflection) {
+    // A fast path for the most common lobe. The results are those of the general code.
+    lobe.sample_weight = mean_component(lobe.weight);
+    lobe.scatter_class = ScatterClass::Diffuse;
+    add_entry(index, kReflects, ScatterClass::Diffuse, lobe.sample_weight);
+    return;
+  }
   const LobeAlbedo albedo = two_sided_albedo(lobe, glm::dot(lobe.normal, wo));
   float reflected = mean_component(albedo.reflected);
   float transmitted = mean_component(albedo.transmitted);
