@@ -1,7 +1,6 @@
 #include "geometry/surface.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -113,14 +112,18 @@ template <class Use>
   use(instance.placement(time, &storage));
 }
 
-// Returns the float next to v in the direction of the sign of `up`, as std::nextafter does for finite v; v if `up` is
-// 0. It computes with bits instead of branches, because branch prediction fails for the signs.
-float step_away(float v, float up) {
-  const auto bits = std::bit_cast<int32_t>(v), up_bits = std::bit_cast<int32_t>(up);
-  const int32_t away = bits + (((bits ^ up_bits) >> 31) | 1);
-  const float from_zero = std::copysign(std::numeric_limits<float>::denorm_min(), up);
-  const float next = v == 0.0f ? from_zero : std::bit_cast<float>(away);
-  return up == 0.0f ? v : next;
+// Returns for each component the float next to v in the direction of the sign of `up`, as std::nextafter does for finite
+// v; v if `up` is 0. It computes with bits instead of branches, because branch prediction fails for the signs.
+Vec3 step_away(const Vec3& v, const Vec3& up) {
+  using Floats = float __attribute__((vector_size(16)));
+  using Bits = int32_t __attribute__((vector_size(16)));
+  const Floats from{v.x, v.y, v.z, 0.0f}, towards{up.x, up.y, up.z, 0.0f};
+  const Bits bits = (Bits)from, up_bits = (Bits)towards;
+  const Bits away = bits + (((bits ^ up_bits) >> 31) | 1);
+  const Bits from_zero = (up_bits & std::numeric_limits<int32_t>::min()) | 1;  // the smallest float of that sign
+  const Bits next = from == 0.0f ? from_zero : away;
+  const Floats result = (Floats)(towards == 0.0f ? bits : next);
+  return Vec3(result[0], result[1], result[2]);
 }
 
 }  // namespace
@@ -231,7 +234,7 @@ Vec3 offset_origin(const SurfacePoint& point, const Vec3& direction) {
   const Vec3 n = point.geometric_normal;
   const Vec3 offset = n * std::copysign(point.error, glm::dot(n, direction));
   const Vec3 p = point.position + offset;
-  return Vec3(step_away(p.x, offset.x), step_away(p.y, offset.y), step_away(p.z, offset.z));
+  return step_away(p, offset);
 }
 
 float pass_surface(const SurfacePoint& point, Ray* ray) {
