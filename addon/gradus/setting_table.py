@@ -113,14 +113,13 @@ ROWS: tuple[dict[str, Any], ...] = (
     dict(
         name="use_guiding",
         kind="BOOL",
-        default=False,
+        default=True,
         label="Path Guiding",
         doc=(
             "Learns from a few discarded samples where the light of rough surfaces comes from, and sends more paths"
-            " there where that reduces noise. It helps rooms that light enters by windows, doors and reflections. "
-            "Learning takes about 6 % of the render time, and guided paths take 10 to 20 % longer. Light that the "
-            "discarded samples have missed becomes noisier: rare bright pixels may be brighter. The viewport and "
-            "previews do without"
+            " there where these samples show that it pays. It helps rooms that light enters by windows, doors and "
+            "reflections. Learning takes up to 6 % of the render time, and guided paths take 10 to 20 % longer. The"
+            " viewport and previews do without"
         ),
     ),
     dict(

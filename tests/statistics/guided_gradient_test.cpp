@@ -56,7 +56,7 @@ class GuidedGradients : public testing::TestWithParam<Case> {
         integrator::train_guide(plain_context(0), 60000, std::atomic<bool>{false}, &cpu);
     field_ = training.field;
     ASSERT_NE(field_, nullptr) << training.guided_share;
-    EXPECT_EQ(training.paths, 60000u);
+    EXPECT_NEAR(double(training.paths), 60000.0, 1000.0);
     EXPECT_GT(cpu, 0u);
   }
   integrator::IntegratorContext plain_context(uint32_t seed, bool independent = true) {

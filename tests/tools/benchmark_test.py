@@ -358,7 +358,8 @@ class FakeRenderers:
         return "no guiding here" if mode == "cycles-guided" else ""
 
     def render(self, mode: str, samples: int, seed: int) -> tuple[np.ndarray, dict[str, float]]:
-        variance, cost = {"path": (0.04, 1e-6), "cycles": (0.08, 4e-6)}.get(mode, (0.0, 1e-6))
+        known = {"path": (0.04, 1e-6), "path-guided": (0.02, 2e-6), "cycles": (0.08, 4e-6)}
+        variance, cost = known.get(mode, (0.0, 1e-6))
         noise = np.random.default_rng(seed).normal(scale=(variance / samples) ** 0.5, size=(*self.size[::-1], 3))
         return 0.5 + noise, {"cpu": 3.0 + cost * samples * self.size[0] * self.size[1]}
 
@@ -378,15 +379,15 @@ def test_plain_paths_are_compared_by_variance_and_time_of_a_sample(
     assert "no guiding here" in capsys.readouterr().out
     assert path_tracing.median_of(row, "path", "seconds") == pytest.approx(1e-6)
     assert path_tracing.median_of(row, "path", "variance") == pytest.approx(0.04 / 0.251, rel=0.02)
-    found = path_tracing.ratios(row, "cycles")
+    found = path_tracing.ratios(row, "path", "cycles")
     assert found is not None
     assert found["seconds"] == pytest.approx(0.25)
     assert found["work"] == pytest.approx(0.125, rel=0.02)
-    assert path_tracing.ratios(row, "cycles-guided") is None
+    assert path_tracing.ratios(row, "path-guided", "cycles-guided") is None
     table = report_module().plain_paths()[1]
     assert table.rows[0][0] == "hero"
     assert table.rows[0][1] == "0.25"
-    assert table.rows[0][5:] == ["–", "1.00"]
+    assert table.rows[0][5:] == ["0.13", "–", "1.00"]
 
 
 def test_plain_paths_of_other_conditions_are_not_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,7 +19,8 @@ class Mode:
 
 
 def _gradus(integrator: str, reconstruction: str, denoiser: str = "NONE") -> dict[str, Any]:
-    chosen = {"integrator": integrator, "reconstruction": reconstruction, "denoiser": denoiser}
+    chosen: dict[str, Any] = {"integrator": integrator, "reconstruction": reconstruction, "denoiser": denoiser}
+    chosen["use_guiding"] = integrator == "AUTO"  # the others are the algorithm alone
     return chosen | {"blur_glossy": 0.0, "clamp_direct": 0.0, "clamp_indirect": 0.0}
 
 
@@ -44,6 +45,7 @@ _CYCLES_DENOISER = {
 
 MODES = {
     "path": Mode("Gradus PT", GRADUS, _gradus("PATH", "NONE")),
+    "path-guided": Mode("Gradus PT with path guiding", GRADUS, _gradus("PATH", "NONE") | {"use_guiding": True}),
     "gradient-none": Mode("Gradus G-PT, not reconstructed", GRADUS, _gradus("GRADIENT", "NONE")),
     "gradient-l2": Mode("Gradus G-PT + L2", GRADUS, _gradus("GRADIENT", "L2")),
     "gradient-l1": Mode("Gradus G-PT + L1", GRADUS, _gradus("GRADIENT", "L1")),
@@ -70,7 +72,7 @@ REFERENCES = {GRADUS: "path", CYCLES: "cycles", MITSUBA: "mitsuba"}
 ESTIMATES_ERROR = {name for name, mode in MODES.items() if mode.settings.get("denoiser") == "NONE"}
 
 # Modes of the measures of speed alone.
-WITHOUT_ERRORS = ("gradient-none", "cycles-guided")
+WITHOUT_ERRORS = ("gradient-none", "path-guided", "cycles-guided")
 
 _CYCLES_SETTINGS = {name for mode in MODES.values() if mode.engine == CYCLES for name in mode.settings}
 

@@ -1,4 +1,5 @@
-"""Measures the variance of a sample and its CPU time by plain path tracing: Gradus against Cycles, without denoisers.
+"""Measures the variance of a sample and its CPU time by plain path tracing, with path guiding and without: Gradus
+against Cycles, without denoisers.
 
     path_tracing.py [--scenes a,b] [--modes path,cycles] [--width 640] [--samples 16] [--seeds 3] [--minutes 600]
 
@@ -26,7 +27,8 @@ from version import conditions
 
 RESULTS = records.file_of("path_tracing")
 OURS = "path"
-MODES = (OURS, "cycles", "cycles-guided")  # of modes.py
+GUIDED = "path-guided"
+MODES = (OURS, GUIDED, "cycles", "cycles-guided")  # of modes.py
 LEVEL, LEVEL_SAMPLES, LEVEL_SEED = "path-regularized", 8, 3000
 SETUP = ("width", "samples", "seeds", "version", "blender", "machine")  # columns in which rows must agree
 MEASURES = ("seconds", "variance", "variance_trimmed")  # of a sample
@@ -83,17 +85,17 @@ def median_of(row: Row, mode: str, name: str) -> float:
     return statistics.median(row["modes"][mode][name])
 
 
-def median_ratio(row: Row, peer: str, name: str) -> float:
+def median_ratio(row: Row, mode: str, peer: str, name: str) -> float:
     """Returns the median of the ratios to a peer within each seed or pair of seeds, where the pace cancels."""
-    pairs = zip(row["modes"][OURS][name], row["modes"][peer][name], strict=True)
+    pairs = zip(row["modes"][mode][name], row["modes"][peer][name], strict=True)
     return statistics.median(ours / theirs for ours, theirs in pairs)
 
 
-def ratios(row: Row, peer: str) -> dict[str, float] | None:
-    """Returns the measures of Gradus over those of a peer, and `work`, the product of time and trimmed variance."""
-    if not {OURS, peer} <= row["modes"].keys():
+def ratios(row: Row, mode: str, peer: str) -> dict[str, float] | None:
+    """Returns the measures of a mode over those of a peer, and `work`, the product of time and trimmed variance."""
+    if not {mode, peer} <= row["modes"].keys():
         return None
-    found = {name: median_ratio(row, peer, name) for name in MEASURES}
+    found = {name: median_ratio(row, mode, peer, name) for name in MEASURES}
     return found | {"work": found["seconds"] * found["variance_trimmed"]}
 
 

@@ -81,17 +81,20 @@ def plain_paths() -> list[Block]:
     rows = path_tracing.newest()
     if not rows:
         return []
-    heads = ["scene", "time", "variance", "variance-t", "time × variance-t", "the same, Cycles guided", "PT, µs"]
+    heads = ["scene", "time", "variance", "variance-t", "time × variance-t", "guided", "both guided", "PT, µs"]
     made = Table(heads)
     for row in rows:
-        plain, guided = (path_tracing.ratios(row, peer) or {} for peer in ("cycles", "cycles-guided"))
+        plain = path_tracing.ratios(row, path_tracing.OURS, "cycles") or {}
         cells = [number(plain.get(name)) for name in (*path_tracing.MEASURES, "work")]
+        for peer in ("cycles", "cycles-guided"):
+            cells.append(number((path_tracing.ratios(row, path_tracing.GUIDED, peer) or {}).get("work")))
         microseconds = 1e6 * path_tracing.median_of(row, path_tracing.OURS, "seconds")
-        made.rows.append([row["scene"], *cells, number(guided.get("work")), number(microseconds)])
+        made.rows.append([row["scene"], *cells, number(microseconds)])
     last = rows[-1]
     about = f"{last['samples']} samples, {last['width']} pixels wide, {last['seeds']} seeds; "
     about += f"commit {last['version']}, Blender {last['blender']}, {last['machine']}"
-    meaning = "Gradus over Cycles for each sample; variance-t leaves out the worst 0.1 % of the pixels."
+    meaning = "Gradus over Cycles for each sample; variance-t leaves out the worst 0.1 % of the pixels. "
+    meaning += "'Guided' is time × variance-t of Gradus with path guiding over Cycles without and with it."
     return [Text(f"## Plain paths: variance and time of a sample\n\n{meaning} {about}."), made]
 
 

@@ -616,11 +616,10 @@ typedef struct GradusSettings {
   int32_t frame;                    /* Number of the frame. Each frame has its own noise pattern. */
   uint32_t integrator;              /* GradusIntegrator: How light paths are sampled. */
   uint32_t use_guiding;             /* Learns from a few discarded samples where the light of rough surfaces comes
-                                       from, and sends more paths there where that reduces noise. It helps rooms that
-                                       light enters by windows, doors and reflections. Learning takes about 6 % of
-                                       the render time, and guided paths take 10 to 20 % longer. Light that the
-                                       discarded samples have missed becomes noisier: rare bright pixels may be
-                                       brighter. The viewport and previews do without. */
+                                       from, and sends more paths there where these samples show that it pays. It
+                                       helps rooms that light enters by windows, doors and reflections. Learning
+                                       takes up to 6 % of the render time, and guided paths take 10 to 20 % longer.
+                                       The viewport and previews do without. */
   uint32_t reconstruction;          /* GradusReconstruction: How the picture is made from the samples and their
                                        gradients. */
   float reconstruction_alpha;       /* Weight of the sampled picture against its gradients in the reconstructions L2

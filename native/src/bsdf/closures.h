@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "base/types.h"
 #include "gradus/gradus.h"
@@ -181,11 +182,12 @@ struct BsdfSample {
   Rgb value = Rgb(0.0f);  // f·|cos| of the class's smooth lobes together, or the coefficient of a Dirac lobe
   float pdf = 0.0f;       // p(wi | class), or the discrete probability of a Dirac lobe within the class
   bool dirac = false;
-  bool transmitted = false;   // whether wi is on the other side of the geometric surface
-  uint8_t lobe = 0;           // index of the sampled lobe
-  bool diffuse = false;       // whether the sampled lobe makes a diffuse bounce
-  float unguided_pdf = 0.0f;  // `pdf` if no direction were guided
-  BsdfEval kind;              // value and density of the class's lobes of that kind; value and pdf for a Dirac lobe
+  bool transmitted = false;  // whether wi is on the other side of the geometric surface
+  uint8_t lobe = 0;          // index of the sampled lobe
+  bool diffuse = false;      // whether the sampled lobe makes a diffuse bounce
+  BsdfEval kind;             // value and density of the class's lobes of that kind; value and pdf for a Dirac lobe
+  // `pdf` and `kind.pdf` if no direction were guided.
+  float unguided_pdf = 0.0f, unguided_kind_pdf = 0.0f;
 };
 
 // Returns the directional albedo of one lobe before finish(), including its weight, for the layers below it. It ignores
@@ -223,10 +225,11 @@ class Closures {
   void set_shading_normals(uint32_t version) { shading_normals_ = version; }
 
   // Lets diffuse lobes of class Diffuse take the guide's share of their directions from what lights the surface at
-  // `position`, until the next finish(). Densities include that share.
-  void guide_by(const guide::Guide& guide, const Vec3& position) {
+  // `position`, until the next finish(), for a path that is guided with the given probability. Densities include that
+  // share.
+  void guide_by(const guide::Guide& guide, const Vec3& position, float probability) {
     guide.places.see_from(position, geometric_normal_, &guide_);
-    guided_share_ = guide.share;
+    guided_share_ = guide.share * probability;
   }
 
   int count() const { return count_; }
@@ -256,6 +259,9 @@ class Closures {
 
   // Returns the density of a direction among all smooth lobes, whatever their class, if no direction were guided.
   float unguided_pdf(const Vec3& wo, const Vec3& wi) const;
+  // Returns the density of a direction among the smooth lobes of a class over that without a guide: of those whose
+  // bounces are diffuse, or not, as `diffuse` says, or of all.
+  float guided_ratio(ScatterClass c, const Vec3& wo, const Vec3& wi, std::optional<bool> diffuse) const;
   // Returns the sum of all smooth lobes of one class.
   BsdfEval evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const;
   // Returns that sum, and separately the sum of the lobes whose bounces are diffuse, or not, as `diffuse` says.

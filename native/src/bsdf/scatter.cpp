@@ -101,7 +101,8 @@ template <class Add>
     const Lobe& lobe = lobes_[entry.lobe];
     BsdfEval eval = evaluate_entry(entry, wo, wi, transmitted);
     const float unguided_pdf = eval.pdf;
-    if (is_guided && may_be_guided(lobe)) eval.pdf += guided_share_ * (guided_pdf * entry.probability - unguided_pdf);
+    if (is_guided && may_be_guided(lobe))
+      eval.pdf = (1.0f - guided_share_) * unguided_pdf + guided_share_ * (guided_pdf * entry.probability);
     add(lobe, eval, unguided_pdf);
   }
 }
@@ -124,6 +125,17 @@ float Closures::unguided_pdf(const Vec3& wo, const Vec3& wi) const {
     pdf += class_probability(k) * of_class;
   }
   return pdf;
+}
+
+float Closures::guided_ratio(ScatterClass c, const Vec3& wo, const Vec3& wi, std::optional<bool> diffuse) const {
+  if (!guides(c)) return 1.0f;
+  float guided = 0.0f, unguided = 0.0f;
+  for_smooth(c, wo, wi, crosses(wi), [&](const Lobe& lobe, const BsdfEval& part, float part_unguided) {
+    if (diffuse && *diffuse != is_diffuse(lobe)) return;
+    guided += part.pdf;
+    unguided += part_unguided;
+  });
+  return unguided > 0.0f ? guided / unguided : 1.0f;
 }
 
 BsdfEval Closures::evaluate(ScatterClass c, const Vec3& wo, const Vec3& wi) const {
@@ -172,7 +184,7 @@ bool Closures::evaluate_dirac(int index, const Vec3& wo, bool transmitted, BsdfS
     out->transmitted = transmitted;
     out->lobe = static_cast<uint8_t>(index);
     out->diffuse = is_diffuse(source);
-    out->unguided_pdf = out->pdf;
+    out->unguided_pdf = out->unguided_kind_pdf = out->pdf;
     out->kind = {out->value, out->pdf};
     return crosses(out->wi) == transmitted;
   }
@@ -217,7 +229,7 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
     return false;
   }
   out->diffuse = is_diffuse(source);
-  out->unguided_pdf = 0.0f;
+  out->unguided_pdf = out->unguided_kind_pdf = 0.0f;
   BsdfEval all, kind;
   for_smooth(c, wo, out->wi, crosses(out->wi), [&](const Lobe& lobe, const BsdfEval& part, float unguided_pdf) {
     all.value += part.value;
@@ -226,6 +238,7 @@ bool Closures::sample(ScatterClass c, const Vec3& wo, float u_lobe, const Vec2& 
     if (is_diffuse(lobe) == out->diffuse) {
       kind.value += part.value;
       kind.pdf += part.pdf;
+      out->unguided_kind_pdf += unguided_pdf;
     }
   });
   out->value = all.value;

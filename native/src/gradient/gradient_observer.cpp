@@ -546,7 +546,7 @@ void GradientObserver::reconnect(OffsetPath* offset, const path::Vertex& vertex,
   }
   ++counters_.shifts_reconnected;
   if (offset->connection.scatters_alike) {
-    share_rest(offset);  // both paths have the same density at the vertex
+    share_rest(offset);  // both paths are taken to have the same density at the vertex
   } else {
     offset->stage = OffsetStage::Reconnected;
   }

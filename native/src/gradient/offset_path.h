@@ -44,7 +44,9 @@ enum class OffsetStage : uint8_t {
   // those of Pending. See GradientObserver::defer_reconnection().
   Deferred,
   // Final stages: each further contribution of the base is paired with throughput times its tail, at the constant
-  // ratio (GradientAccumulator).
+  // ratio (GradientAccumulator). Where the two paths are guided with different probabilities, the offset is taken to
+  // have the base's densities at shared vertices. The inverse shift does the same, so that the weights of a pair sum
+  // to 1.
   Shared,     // the two paths share all further vertices and densities
   Decoupled,  // throughput is 0: both paths go on without each other (decoupling.h)
   Failed,     // throughput and ratio are 0: there is no shift, and contributions of the base are unpaired
@@ -67,6 +69,7 @@ struct OffsetConnection {
   uint16_t transparent_depth = 0;  // number of transparent surfaces that the offset has passed on arrival
   bool may_scatter = false;        // the offset may pass more of them, so that its path does not end at x_{i+1}
   float blur = 0.0f;               // blur of the lobes at x_{i+1} (path/filter_glossy.h)
+  float guided_ratio = 1.0f;       // density of the offset's directions over that without a guide
   float pdf = 0.0f;                // density of the direction to x_{i+1} at y_i
 };
 

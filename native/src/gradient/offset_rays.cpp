@@ -86,6 +86,7 @@ void leave_by_event(const BasePath& base, const ShiftedEvent& event, bool is_dir
   state.ray.state.transparent_depth = before.transparent_depth;
   state.ray.state.portal_depth = before.portal_depth;
   state.ray.state.blur = std::max(before.blur, blur);
+  state.ray.state.guided_ratio = before.guided_ratio * guided_ratio(base.event, y, event.wi);
   state.ray.ray = path::spawn_ray(offset->vertex->point, event.wi);
   state.depth = base.state.depth;
   state.lpe_state = base.state.lpe_state;

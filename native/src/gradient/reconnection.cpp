@@ -34,6 +34,7 @@ void open_connection(const BasePath& base, const ShiftedEvent& event, const Rgb&
   const path::Vertex& y = *offset->vertex;
   connection.blur =
       std::max(offset->state.ray.state.blur, base.context.filter_glossy.blur_behind(y.shade.closures, y.wo, event.wi));
+  connection.guided_ratio = offset->state.ray.state.guided_ratio * guided_ratio(base.event, y, event.wi);
   offset->shared_vertex->wo = -event.wi;
 }
 
@@ -43,6 +44,7 @@ shading::RayState shared_ray_state(const BasePath& base, const OffsetPath& offse
   ray.transparent_depth = offset.connection.transparent_depth;
   ray.portal_depth = offset.state.ray.state.portal_depth;
   ray.blur = offset.connection.blur;
+  ray.guided_ratio = offset.connection.guided_ratio;
   ray.length = glm::length(z.point.position - offset.vertex->point.position);
   return ray;
 }
@@ -190,6 +192,7 @@ void share_vertex(const BasePath& base, const path::Vertex& z, OffsetPath* offse
   offset->state.throughput = offset->connection.throughput;
   offset->state.ray.state.transparent_depth = offset->connection.transparent_depth;
   offset->state.ray.state.blur = offset->connection.blur;
+  offset->state.ray.state.guided_ratio = offset->connection.guided_ratio;
   offset->ratio = offset->connection.ratio;
   offset->kind_ratio = offset->connection.kind_ratio;
   offset->copies_class_choice = false;

@@ -36,6 +36,11 @@ ShiftedEvent weigh_event(const path::ScatterEvent& event, const Vec3& wi, const 
 // y.
 ShiftedEvent event_towards(const path::ScatterEvent& event, const path::Vertex& y, const Vec3& wi, float jacobian);
 
+// Returns the density of the event at y with direction wi over that without a guide.
+inline float guided_ratio(const path::ScatterEvent& event, const path::Vertex& y, const Vec3& wi) {
+  return y.shade.closures.guided_ratio(event.scatter_class, y.wo, wi, event.sampled_kind());
+}
+
 // Returns whether wi lies on the other side of the surface than the outgoing direction.
 inline bool is_transmission(const path::Vertex& vertex, const Vec3& wi) {
   return glm::dot(vertex.facing_normal(), wi) < 0.0f;

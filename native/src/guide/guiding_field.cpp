@@ -21,8 +21,8 @@ constexpr float kNormalScale = 0.75f;
 constexpr float kFar = 1e3f;
 // A cell is guided if the second moment of its samples becomes smaller than this times that without a guide.
 constexpr double kMaxMoment = 0.95;
-// Shares of guided directions among which a cell chooses.
-constexpr std::array<double, 3> kShares = {0.25, 0.5, 0.75};
+// Shares of guided directions among which a cell chooses for guided paths.
+constexpr std::array<double, 4> kShares = {0.25, 0.5, 0.75, 1.0};
 // Densities of the samples below this count as this.
 constexpr float kMinPdf = 1e-3f;
 
@@ -58,7 +58,8 @@ Observation observation_of(const TrainingSample& s, const Vec3& centre, float di
 }
 
 // Returns the share of guided directions that has the least second moment of the light that a Lambert surface reflects,
-// estimated by the samples that were not used for the fit; 0 if no share reduces it enough.
+// estimated by the samples that were not used for the fit, with kUnguidedPaths as at the first vertex of a path; 0 if
+// no share reduces it enough.
 float best_share(const LitPlaces& places, Samples samples) {
   std::array<double, kShares.size()> moments{};
   double plain = 0.0;
@@ -71,8 +72,10 @@ float best_share(const LitPlaces& places, Samples samples) {
     const double value = double(s.radiance) * cosine, pdf = cosine * kInvPi, guided_pdf = mixture.pdf(s.direction);
     const double square = value * value / std::max(s.pdf, kMinPdf);
     plain += square / pdf;
-    for (size_t k = 0; k < kShares.size(); ++k)
-      moments[k] += square / (kShares[k] * guided_pdf + (1.0 - kShares[k]) * pdf);
+    for (size_t k = 0; k < kShares.size(); ++k) {
+      const double share = kShares[k] * (1.0 - kUnguidedPaths);
+      moments[k] += square / (share * guided_pdf + (1.0 - share) * pdf);
+    }
   }
   const auto best = std::min_element(moments.begin(), moments.end());
   return *best < kMaxMoment * plain ? float(kShares[size_t(best - moments.begin())]) : 0.0f;

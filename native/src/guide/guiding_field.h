@@ -1,6 +1,7 @@
 // The light that arrives at the surfaces of a scene, learnt from paths, as densities by which to sample directions.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,10 +23,21 @@ struct TrainingSample {
 // How surfaces around a point are guided.
 struct Guide {
   LitPlaces places;
-  // Share of guided directions among those that guided lobes sample, below 1. The rest follow the BSDF, so that a wrong
-  // guide cannot hide light.
+  // Share of guided directions among those that lobes of a guided path sample. The rest follow the BSDF.
   float share = 0.0f;
 };
+
+// Share of the paths that no vertex guides. The guide may be wrong, and light that it does not know must be found, too.
+inline constexpr float kUnguidedPaths = 0.5f;
+// Returns the probability that a path is one of the guided ones, by Bayes' rule, if the density of its directions is
+// `ratio` times that without a guide. Where each vertex is guided with this probability, the density of a whole path is
+// kUnguidedPaths times that without a guide plus the rest times that with one. The second moment of what a path of one
+// length contributes is then at most 1/kUnguidedPaths times that without a guide, however many vertices are guided
+// wrongly. The probability stays below 1, so that every direction can be sampled.
+inline float guided_probability(float ratio) {
+  constexpr float kMost = 1.0f - 1.0f / float(1 << 20);
+  return std::clamp(1.0f - kUnguidedPaths / ratio, 0.0f, kMost);
+}
 
 // The surfaces are divided into cells with about equally many samples, by position and normal. A cell is guided where
 // that reduces the variance of its samples.

@@ -1,7 +1,9 @@
 #include "integrator/guide_training.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -15,10 +17,22 @@ namespace {
 
 // Random numbers of the training. Seeds of users are below 2³¹.
 constexpr uint32_t kSeed = 0xf0677569u;
-// The first part of the paths is not guided; the rest is guided by what the first part has found.
-constexpr uint32_t kFirstPart = 3;  // 1 over this of all paths
-// Guiding is used if it pays for this share of the samples.
+// The paths are traced in rounds through the same positions on the film. The first half of the rounds is not guided,
+// the rest is guided by what they have found. The paths of two rounds show how noisy a sample is.
+constexpr uint32_t kRounds = 4;
+// Guided paths are traced if guiding pays for this share of the samples.
 constexpr float kMinShare = 0.1f;
+// Time of a ray with a guide over that without.
+constexpr double kTimeOfGuide = 1.15;
+// The render is guided if the variance of a sample times its time becomes smaller than this times that without a guide.
+// Its guide has learnt from twice as many paths as that of the rounds, and is better.
+constexpr double kMaxProduct = 1.1;
+// Number of positions on an edge of a square, to whose mean light noise is relative.
+constexpr uint32_t kLevelEdge = 8;
+// The mean of the whole film times this is added, so that dark squares do not count for most.
+constexpr double kMinLevel = 0.1;
+// This share of the positions, which differ most, does not count as noise. They would hide the others.
+constexpr double kOutliers = 1.0 / 200.0;
 
 using Samples = std::vector<guide::TrainingSample>;
 
@@ -30,7 +44,11 @@ class TrainingObserver : public path::NoObserver {
   void on_path_start(const path::Sampler&, const camera::CameraSample&) {
     first_ = samples_.size();
     throughputs_.clear();
+    light_ = 0.0f;
   }
+  // Returns the light that the path has found.
+  float light() const { return light_; }
+
   void on_segment(const path::RaySource& source, const path::PathState& state, const path::Segment& segment,
                   const path::Vertex& end) {
     if (source.vertex == nullptr || !is_rough(*source.event)) return;
@@ -53,8 +71,10 @@ class TrainingObserver : public path::NoObserver {
     return event.scatter_class == bsdf::ScatterClass::Diffuse && !event.is_exit;
   }
 
-  // Adds a contribution to the radiance that arrives at each surface of the path.
+  // Adds a contribution to the light of the path, and to the radiance that arrives at each of its surfaces.
   void add(const path::Contribution& c) {
+    const float light = light_ + mean_component(c.clamped);
+    if (is_finite(light)) light_ = light;
     for (size_t i = 0; i < throughputs_.size(); ++i) {
       Rgb radiance(0.0f);
       for (int k = 0; k < 3; ++k)
@@ -67,36 +87,86 @@ class TrainingObserver : public path::NoObserver {
   Samples& samples_;
   size_t first_ = 0;              // sample of the path's first rough surface
   std::vector<Rgb> throughputs_;  // behind each of them
+  float light_ = 0.0f;
 };
 
-// Traces about `paths` paths over the whole frame, and appends their samples row by row. `part` is that of the
-// training.
-void trace_part(const IntegratorContext& context, uint32_t paths, uint32_t part, const std::atomic<bool>& stop,
-                std::atomic<uint64_t>* cpu, Samples* samples) {
+// Positions on the film, row by row.
+struct Grid {
+  uint32_t columns = 0, rows = 0;
+  size_t size() const { return size_t(columns) * rows; }
+};
+
+Grid grid_of(const GradusSettings& settings, double positions) {
+  const double step = std::sqrt(double(settings.width) * settings.height / positions);
+  return {std::max(uint32_t(settings.width / step), 1u), std::max(uint32_t(settings.height / step), 1u)};
+}
+
+struct Round {
+  std::vector<float> light;  // that each path has found
+  uint64_t rays = 0;
+};
+
+// Traces a path through each position, and appends their samples.
+Round trace_round(const IntegratorContext& context, const Grid& grid, uint32_t number, const std::atomic<bool>& stop,
+                  std::atomic<uint64_t>* cpu, Samples* samples) {
   const path::PathContext path(*context.snapshot, context.camera, context.settings, context.components);
-  const auto width = float(context.settings.width), height = float(context.settings.height);
-  const float step = std::sqrt(width * height / float(paths));
-  const auto columns = std::max(uint32_t(width / step), 1u), rows = std::max(uint32_t(height / step), 1u);
-  std::vector<Samples> of_row(rows);
-  tbb::parallel_for(0u, rows, [&](uint32_t y) {
+  const Vec2 step(float(context.settings.width) / float(grid.columns),
+                  float(context.settings.height) / float(grid.rows));
+  Round round;
+  round.light.resize(grid.size());
+  std::vector<Samples> of_row(grid.rows);
+  std::vector<film::Counters> counters(grid.rows);
+  tbb::parallel_for(0u, grid.rows, [&](uint32_t y) {
     if (stop.load(std::memory_order_relaxed)) return;
     const FlushDenormals flush;
     const ScopedThreadTimer timer(cpu);
-    film::Counters counters;
     TrainingObserver observer(&of_row[y]);
     const auto scratch = std::make_unique<path::PathScratch>();
-    path::PathTracer<TrainingObserver> tracer(path, scratch.get(), nullptr, &counters, &observer);
-    for (uint32_t x = 0; x < columns; ++x) {
-      const path::Sampler sampler({kSeed, path::StreamKind::Pilot, y * columns + x, 0, part});
-      const Vec2 jitter = sampler.get2(path::dimension::kFilm);
-      tracer.li(sampler,
-                {(float(x) + jitter.x) / float(columns) * width, (float(y) + jitter.y) / float(rows) * height});
+    path::PathTracer<TrainingObserver> tracer(path, scratch.get(), nullptr, &counters[y], &observer);
+    for (uint32_t x = 0; x < grid.columns; ++x) {
+      path::SampleKey key{kSeed, path::StreamKind::Pilot, y * grid.columns + x};
+      const Vec2 jitter = path::Sampler(key).get2(path::dimension::kFilm);
+      key.index = number;
+      tracer.li(path::Sampler(key), (Vec2(float(x), float(y)) + jitter) * step);
+      round.light[size_t(y) * grid.columns + x] = observer.light();
     }
   });
   for (Samples& row : of_row) {
     samples->insert(samples->end(), row.begin(), row.end());
     row = {};
   }
+  for (const film::Counters& c : counters) round.rays += c.rays_primary + c.rays_bounce + c.rays_shadow;
+  return round;
+}
+
+// Returns the squared level of light to which noise is relative, for each position.
+std::vector<double> squared_levels(const std::array<Round, kRounds>& rounds, const Grid& grid) {
+  const auto edges = [](uint32_t n) { return (n + kLevelEdge - 1) / kLevelEdge; };
+  const uint32_t columns = edges(grid.columns);
+  std::vector<double> sums(size_t(columns) * edges(grid.rows)), counts(sums.size());
+  const auto square_of = [&](size_t i) {
+    return i / grid.columns / kLevelEdge * columns + i % grid.columns / kLevelEdge;
+  };
+  double sum = 0.0;
+  for (size_t i = 0; i < grid.size(); ++i) {
+    for (const Round& round : rounds) sums[square_of(i)] += round.light[i], sum += round.light[i];
+    counts[square_of(i)] += kRounds;
+  }
+  const double least = kMinLevel * sum / double(grid.size() * kRounds);
+  std::vector<double> levels(grid.size());
+  for (size_t i = 0; i < levels.size(); ++i)
+    levels[i] = std::pow(sums[square_of(i)] / counts[square_of(i)], 2) + least * least;
+  return levels;
+}
+
+// Returns the relative variance of a path, from two rounds.
+double noise_of(const Round& a, const Round& b, const std::vector<double>& squared_levels) {
+  std::vector<double> squares(squared_levels.size());
+  for (size_t i = 0; i < squares.size(); ++i)
+    squares[i] = 0.5 * std::pow(double(a.light[i]) - b.light[i], 2) / std::max(squared_levels[i], 1e-60);
+  const size_t kept = squares.size() - size_t(kOutliers * double(squares.size()));
+  std::nth_element(squares.begin(), squares.begin() + ptrdiff_t(kept) - 1, squares.end());
+  return std::accumulate(squares.begin(), squares.begin() + ptrdiff_t(kept), 0.0) / double(kept);
 }
 
 }  // namespace
@@ -104,20 +174,31 @@ void trace_part(const IntegratorContext& context, uint32_t paths, uint32_t part,
 GuideTraining train_guide(const IntegratorContext& context, uint32_t paths, const std::atomic<bool>& stop,
                           std::atomic<uint64_t>* cpu) {
   GuideTraining training;
+  const Grid grid = grid_of(context.settings, double(paths) / kRounds);
   IntegratorContext guided = context;
   Samples samples;
-  for (uint32_t part = 0; part < 2; ++part) {
-    const uint32_t count = part == 0 ? paths / kFirstPart : paths - paths / kFirstPart;
-    trace_part(guided, count, part, stop, cpu, &samples);
-    training.paths += count;
+  std::array<Round, kRounds> rounds;
+  for (uint32_t i = 0; i < kRounds; ++i) {
+    if (i == kRounds / 2) {
+      const ScopedThreadTimer timer(cpu);
+      auto field = std::make_shared<const guide::GuidingField>(samples);
+      training.guided_share = field->guided_share();
+      if (training.guided_share < kMinShare) return training;
+      training.field = std::move(field);
+      guided.snapshot = guided_snapshot(*context.snapshot, training.field);
+    }
+    rounds[i] = trace_round(guided, grid, i, stop, cpu, &samples);
+    training.paths += grid.size();
     if (stop.load(std::memory_order_relaxed)) return training;
-    const ScopedThreadTimer timer(cpu);
-    auto field = std::make_shared<guide::GuidingField>(part == 0 ? samples : std::move(samples));
-    training.guided_share = field->guided_share();
-    training.field = training.guided_share < kMinShare ? nullptr : std::move(field);
-    if (!training.field) return training;
-    guided.snapshot = guided_snapshot(*context.snapshot, training.field);
   }
+  const ScopedThreadTimer timer(cpu);
+  const std::vector<double> levels = squared_levels(rounds, grid);
+  const double noise = noise_of(rounds[0], rounds[1], levels);
+  training.noise_ratio = noise > 0.0 ? noise_of(rounds[2], rounds[3], levels) / noise : 1.0;
+  training.time_ratio =
+      kTimeOfGuide * double(rounds[2].rays + rounds[3].rays) / double(rounds[0].rays + rounds[1].rays);
+  training.pays = training.noise_ratio * training.time_ratio < kMaxProduct;
+  if (training.pays) training.field = std::make_shared<const guide::GuidingField>(std::move(samples));
   return training;
 }
 

@@ -8,9 +8,15 @@
 namespace gradus::integrator {
 
 struct GuideTraining {
-  std::shared_ptr<const guide::GuidingField> field;  // null if guiding pays almost nowhere
-  uint64_t paths = 0;                                // number of paths, which are discarded
-  double guided_share = 0.0;                         // of the samples of rough surfaces, in cells where guiding pays
+  // Whether paths should be guided, and by what. The field is null if it would guide almost nowhere, and that of the
+  // first half of the paths where it does not pay.
+  bool pays = false;
+  std::shared_ptr<const guide::GuidingField> field;
+  uint64_t paths = 0;         // number of paths, which are discarded
+  double guided_share = 0.0;  // of the samples of rough surfaces, in cells where the field guides
+  // Variance and estimated time of a path that the field of the first half guides, over those without a guide. They are
+  // known if there is a field.
+  double noise_ratio = 1.0, time_ratio = 1.0;
 };
 
 // Returns what about `paths` paths, spread over the frame, have learnt. Their random numbers do not depend on the seed

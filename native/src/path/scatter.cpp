@@ -74,7 +74,7 @@ float survive(const VertexSample& u, PathState* state) {
     return 1.0f;
   }
   const float probability =
-      std::min(1.0f, std::sqrt(std::max(0.0f, max_component(state->throughput) * state->roulette_factor)));
+      std::min(1.0f, std::sqrt(std::max(0.0f, max_component(state->throughput) * state->ray.state.guided_ratio)));
   if (probability < 1.0f && !(u.roulette.x < probability)) {
     return 0.0f;
   }
@@ -106,7 +106,9 @@ bool scatter(const PathContext& context, const VertexSample& u, const Vertex& ve
                         : is_clear(event->glass_limit, vertex, event->scatter_class, sample.wi, sample.transmitted);
   state->ray.state.glass_depth += event->is_clear ? 1 : 0;
   state->throughput *= event->factor;
-  if (sample.unguided_pdf > 0.0f) state->roulette_factor *= sample.pdf / sample.unguided_pdf;
+  const float pdf = event->by_kind ? sample.kind.pdf : sample.pdf;
+  const float unguided_pdf = event->by_kind ? sample.unguided_kind_pdf : sample.unguided_pdf;
+  if (unguided_pdf > 0.0f) state->ray.state.guided_ratio *= pdf / unguided_pdf;
   ++state->depth;
   state->lpe_state = context.components.next(state->lpe_state, event->scatter_class);
   leave_surface(vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac,

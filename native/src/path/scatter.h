@@ -1,6 +1,8 @@
 // Scattering of a base path: BSDF sampling of a class and then of a direction, bounce limits, and Russian roulette.
 #pragma once
 
+#include <optional>
+
 #include "path/segment.h"
 
 namespace gradus::path {
@@ -12,9 +14,6 @@ inline bool shows_background(const shading::RayState& ray) { return ray.glass_de
 struct PathState {
   PathRay ray;
   Rgb throughput = Rgb(1.0f);
-  // Factor of the throughput in the probability of Russian roulette: that without guided directions over that with
-  // them. A guided path has a low throughput because it leads to much light.
-  float roulette_factor = 1.0f;
   int depth = 0;                // number of scattering events so far
   bool emission_only = false;   // the bounce limits are reached: the path ends with the emission of the next vertex
   lpe::LpeState lpe_state = 0;  // light path expression state after these events
@@ -43,6 +42,8 @@ struct ScatterEvent {
   float blur = 0.0f;      // by which Filter Glossy blurs what the next ray meets, for this event alone
   // Returns P(kind | direction) within the class.
   float kind_share() const { return sample.kind.pdf / sample.pdf; }
+  // Returns the kind of the bounce if it is sampled.
+  std::optional<bool> sampled_kind() const { return by_kind ? std::optional(sample.diffuse) : std::nullopt; }
 };
 
 // Returns whether the film's background shows through a smooth event of class c: as in Cycles, where glass transmits
@@ -57,8 +58,9 @@ uint32_t bounce_visibility(bsdf::LightPass pass, bool transmitted);
 
 // Plays Russian roulette at a vertex, after its emission was added and before it is lit, so that emission does not
 // suffer from its variance. As in Cycles, it starts at the third vertex, and the probability is the square root of the
-// largest channel, which is roughly uniform on a display. Returns 0 if the path ends, otherwise the probability by
-// which it has divided the throughput.
+// largest channel, which is roughly uniform on a display. The throughput is that without a guide: that of a guided path
+// is low because the path leads to much light. Returns 0 if the path ends, otherwise the probability by which it has
+// divided the throughput.
 float survive(const VertexSample& u, PathState* state);
 
 // Chooses the class by which a vertex scatters with a random number. Returns false if it does not scatter.

@@ -13,7 +13,7 @@ constexpr double kMinPaths = 8192.0;
 // Maximum number of paths for each second of a time limit: about a tenth of what one thread traces.
 constexpr double kPathsPerSecond = 2e4;
 // A region is guided if it has at least this share of the frame, from all of which the paths are taken.
-constexpr double kMinRegion = 1.0 / 16.0;
+constexpr double kMinRegion = 1.0 / 2.0;
 
 }  // namespace
 
@@ -33,14 +33,17 @@ uint32_t guide_paths(const GradusSettings& settings, uint32_t samples, const Reg
 }
 
 void explain(const integrator::GuideTraining& training, Reasons* chosen, Reasons* skipped) {
-  const std::string share = std::to_string(std::lround(100.0 * training.guided_share)) + " %";
-  const std::string paths = std::to_string(training.paths) + " discarded paths";
-  if (training.field)
-    chosen->emplace_back("path guiding", paths + " found that it reduces the variance of " + share +
-                                             " of the samples of rough surfaces");
+  const auto percent = [](double ratio) { return std::to_string(std::lround(100.0 * ratio)) + " %"; };
+  const std::string found = std::to_string(training.paths) + " discarded paths found that it ";
+  const std::string measured = "takes a sample's variance to " + percent(training.noise_ratio) + " and its time to " +
+                               percent(training.time_ratio);
+  if (training.pays)
+    chosen->emplace_back("path guiding", found + measured + ", before it has learnt from the second half of them");
+  else if (!training.field)
+    skipped->emplace_back("path guiding", found + "would reduce the variance of only " +
+                                              percent(training.guided_share) + " of the samples of rough surfaces");
   else
-    skipped->emplace_back("path guiding", paths + " found that it would reduce the variance of only " + share +
-                                              " of the samples of rough surfaces");
+    skipped->emplace_back("path guiding", found + measured + ", which does not pay");
 }
 
 }  // namespace gradus::render

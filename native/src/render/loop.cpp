@@ -120,7 +120,8 @@ void RenderLoop::render() {
 void RenderLoop::learn_guide() {
   const GradusSettings& settings = input_.settings;
   std::string why_not = input_.meets_replays() ? "samples are replayed in other frames" : "";
-  const uint32_t samples = net_samples() > 0 ? net_samples() : settings.samples;
+  uint32_t samples = net_samples() > 0 ? net_samples() : settings.samples;
+  if (settings.noise_threshold > 0.0f) samples = std::min(samples, plan_.first_check);  // all may end there
   const uint32_t paths = guide_paths(settings, samples, plan_.delivered, &why_not);
   if (paths == 0) {
     stats_.skipped.emplace_back("path guiding", why_not);
@@ -134,7 +135,7 @@ void RenderLoop::learn_guide() {
   stats_.cpu_seconds.sample += 1e-9 * double(cpu.load());
   check_cancelled();
   explain(training, &stats_.chosen, &stats_.skipped);
-  if (training.field) input_.snapshot = integrator::guided_snapshot(*input_.snapshot, training.field);
+  if (training.pays) input_.snapshot = integrator::guided_snapshot(*input_.snapshot, training.field);
 }
 
 GradientMap RenderLoop::choose_gradients() {

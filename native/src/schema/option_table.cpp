@@ -68,12 +68,11 @@ constexpr Option kOptions[] = {
            "paths. This is the reference that the other methods are compared with. gradient: Traces four offset paths"
            " beside every path, which gives the differences between neighbouring pixels. A sample takes 1.5 to 2 "
            "times as long."),
-    OPTION(use_guiding, GRADUS_OPTION_BOOL, 0, 0, 1, {}, true,
+    OPTION(use_guiding, GRADUS_OPTION_BOOL, 1, 0, 1, {}, true,
            "Learns from a few discarded samples where the light of rough surfaces comes from, and sends more paths "
-           "there where that reduces noise. It helps rooms that light enters by windows, doors and reflections. "
-           "Learning takes about 6 % of the render time, and guided paths take 10 to 20 % longer. Light that the "
-           "discarded samples have missed becomes noisier: rare bright pixels may be brighter. The viewport and "
-           "previews do without."),
+           "there where these samples show that it pays. It helps rooms that light enters by windows, doors and "
+           "reflections. Learning takes up to 6 % of the render time, and guided paths take 10 to 20 % longer. The "
+           "viewport and previews do without."),
     OPTION(reconstruction, GRADUS_OPTION_ENUM, 0, 0, 5, kReconstructionChoices, false,
            "How the picture is made from the samples and their gradients. auto: Regularized. With the integrator Path"
            " the sampled picture is delivered. none: Delivers the sampled picture. l2: Least squares of samples and "

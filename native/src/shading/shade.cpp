@@ -37,27 +37,27 @@ void run_noting_faults(const Program& program, const ShadeContext& context, Shad
 
 // Finishes the closures of a result after all have been added.
 void complete(const ShadedScene& scene, const MaterialData& material, const geometry::SurfacePoint& point,
-              const Vec3& geometric_normal, const Vec3& normal, const Vec3& wo, float roughness_threshold, float blur,
-              ShadeResult* result) {
+              const Vec3& geometric_normal, const Vec3& normal, const Vec3& wo, const RayState& ray,
+              float roughness_threshold, ShadeResult* result) {
   result->closures.set_terminator_frequency(point.terminator_frequency);
   result->closures.set_shading_normals(material.shading_normals);
-  result->closures.finish(wo, geometric_normal, roughness_threshold, normal, blur);
+  result->closures.finish(wo, geometric_normal, roughness_threshold, normal, ray.blur);
   result->ignores_wo = !material.values_depend_on_ray && result->closures.ignores_wo();
   result->complete = true;
   if (!scene.guiding || !result->closures.has_smooth(bsdf::ScatterClass::Diffuse)) return;
   if (const guide::Guide* guide = scene.guiding->at(point.position, geometric_normal); guide != nullptr)
-    result->closures.guide_by(*guide, point.position);
+    result->closures.guide_by(*guide, point.position, guide::guided_probability(ray.guided_ratio));
 }
 
 // A fast path for materials with is_lambert. The result is that of their program.
 void shade_lambert(const ShadedScene& scene, const MaterialData& material, const geometry::SurfacePoint& point,
-                   const Vec3& wo, float roughness_threshold, ShadeResult* result) {
+                   const Vec3& wo, const RayState& ray, float roughness_threshold, ShadeResult* result) {
   bsdf::Lobe* lobe = result->closures.add();
   *lobe = material.lambert;
   lobe->normal = point.shading_normal;
   const bool backfacing = glm::dot(point.geometric_normal, wo) < 0.0f;
   complete(scene, material, point, backfacing ? -point.geometric_normal : point.geometric_normal,
-           backfacing ? -point.shading_normal : point.shading_normal, wo, roughness_threshold, 0.0f, result);
+           backfacing ? -point.shading_normal : point.shading_normal, wo, ray, roughness_threshold, result);
 }
 
 // Returns a cleared temporary result for programs whose closures are not needed. It is large, so each thread keeps one.
@@ -97,11 +97,11 @@ void shade_surface(const ShadedScene& scene, const geometry::SurfacePoint& point
   result->fallback = material.uses_fallback;
   // A Lambert surface is not recorded on the tape. It does not depend on the direction on this side, and shading it
   // again for the other side is as fast as a replay.
-  if (material.is_lambert) return shade_lambert(scene, material, point, wo, roughness_threshold, result);
+  if (material.is_lambert) return shade_lambert(scene, material, point, wo, ray, roughness_threshold, result);
   const ShadeContext context = context_of(material, material.bumps, scene, point, wo, ray);
   run_noting_faults(material.surface, context, result);
   if (result->tape) result->tape->finish();
-  complete(scene, material, point, context.geometric_normal, context.normal, wo, roughness_threshold, ray.blur, result);
+  complete(scene, material, point, context.geometric_normal, context.normal, wo, ray, roughness_threshold, result);
 }
 
 void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& point, const ClosureTape& tape,
@@ -117,7 +117,7 @@ void shade_from_tape(const ShadedScene& scene, const geometry::SurfacePoint& poi
   }
   if (result->is_faulty) note_fault(context);
   result->fallback = material.uses_fallback;
-  complete(scene, material, point, context.geometric_normal, context.normal, wo, roughness_threshold, ray.blur, result);
+  complete(scene, material, point, context.geometric_normal, context.normal, wo, ray, roughness_threshold, result);
 }
 
 void shade_without_closures(const ShadedScene& scene, const geometry::SurfacePoint& point, const Vec3& wo,

@@ -38,10 +38,11 @@ struct RayState {
   uint16_t transmission_depth = 0;
   uint16_t transparent_depth = 0;
   uint16_t portal_depth = 0;
-  uint16_t glass_depth = 0;  // number of first events through which the film's background shows (path/scatter.h)
-  float pixel_angle = 0.0f;  // angle of a pixel, or its share of an orthographic picture; 0 shows images in full
-  float blur = 0.0f;         // minimum alpha of the lobes that the ray meets, by Filter Glossy (path/filter_glossy.h)
-  uint32_t random = 0;       // key of the path's sample, for nodes that draw random numbers; 0: there is no path
+  uint16_t glass_depth = 0;   // number of first events through which the film's background shows (path/scatter.h)
+  float pixel_angle = 0.0f;   // angle of a pixel, or its share of an orthographic picture; 0 shows images in full
+  float blur = 0.0f;          // minimum alpha of the lobes that the ray meets, by Filter Glossy (path/filter_glossy.h)
+  float guided_ratio = 1.0f;  // density of the path's directions over that without a guide (guide/guiding_field.h)
+  uint32_t random = 0;        // key of the path's sample, for nodes that draw random numbers; 0: there is no path
 };
 
 // A colour and a value that a material gives to an AOV.

@@ -25,7 +25,8 @@ guide::LitPlaces make_places() {
   return guide::LitPlaces(Vec3(0.0f), observations);
 }
 
-bsdf::Closures make_closures(const std::vector<bsdf::Lobe>& lobes, const Vec3& wo, bool guided) {
+// `guided` is the probability that the path is guided.
+bsdf::Closures make_closures(const std::vector<bsdf::Lobe>& lobes, const Vec3& wo, float guided) {
   bsdf::Closures closures;
   for (bsdf::Lobe lobe : lobes) {
     lobe.normal = kTestNormal;
@@ -33,7 +34,7 @@ bsdf::Closures make_closures(const std::vector<bsdf::Lobe>& lobes, const Vec3& w
     *closures.add() = lobe;
   }
   closures.finish(wo, kTestNormal, 0.1f);
-  if (guided) closures.guide_by({make_places(), 0.5f}, Vec3(0.05f, -0.02f, 0.1f));
+  if (guided > 0.0f) closures.guide_by({make_places(), 0.5f}, Vec3(0.05f, -0.02f, 0.1f), guided);
   return closures;
 }
 
@@ -60,7 +61,7 @@ const Vec3 kView = tilted_direction(0.6f, 1.0f);
 
 TEST(GuidedClosures, SamplesFollowTheDensity) {
   for (const Mix& mix : mixes()) {
-    const bsdf::Closures closures = make_closures(mix.lobes, kView, true);
+    const bsdf::Closures closures = make_closures(mix.lobes, kView, 1.0f);
     ChiSquareOptions options;
     options.axis = kTestNormal;
     options.samples = 500000;
@@ -76,7 +77,7 @@ TEST(GuidedClosures, SamplesFollowTheDensity) {
     // The glossy lobe loses directions below the surface; guided directions are never lost.
     EXPECT_NEAR(result.mass, 1.0, mix.lobes.size() == 1 ? 5e-3 : 0.05) << mix.name;
     // The density without the guide is not that of the samples.
-    const bsdf::Closures plain = make_closures(mix.lobes, kView, false);
+    const bsdf::Closures plain = make_closures(mix.lobes, kView, 0.0f);
     EXPECT_FALSE(chi_square_sphere(
                      sample, [&](const Vec3& wi) { return plain.evaluate(kDiffuse, kView, wi).pdf; }, options)
                      .passed);
@@ -89,8 +90,8 @@ TEST(GuidedClosures, SampleAgreesWithEvaluate) {
     int above = 0, below = 0;
     for (int i = 0; i < 5000; ++i) {
       const Vec3 wo = tilted_direction(std::max(1e-2f, random.get()), 6.0f * random.get());
-      const bsdf::Closures guided = make_closures(mix.lobes, wo, i % 50 != 0);
-      const bsdf::Closures plain = make_closures(mix.lobes, wo, false);
+      const bsdf::Closures guided = make_closures(mix.lobes, wo, i % 50 != 0 ? 1.0f : 0.0f);
+      const bsdf::Closures plain = make_closures(mix.lobes, wo, 0.0f);
       bsdf::BsdfSample s;
       const float u = random.get();
       if (!guided.sample(kDiffuse, wo, u, random.get2(), &s)) continue;
@@ -99,10 +100,16 @@ TEST(GuidedClosures, SampleAgreesWithEvaluate) {
       const bsdf::BsdfEval all = guided.evaluate(kDiffuse, wo, s.wi), without = plain.evaluate(kDiffuse, wo, s.wi);
       ASSERT_NEAR(all.pdf, s.pdf, 1e-4f * s.pdf) << mix.name;
       ASSERT_NEAR(s.unguided_pdf, without.pdf, 1e-4f * without.pdf) << mix.name;
+      const float ratio = guided.guided_ratio(kDiffuse, wo, s.wi, {});
+      ASSERT_NEAR(ratio, without.pdf > 0.0f ? all.pdf / without.pdf : 1.0f, 1e-4f * ratio) << mix.name;
       ASSERT_LE(max_component(glm::abs(s.value - without.value)), 1e-4f * max_component(without.value)) << mix.name;
       const bsdf::KindEval kinds = guided.evaluate(kDiffuse, wo, s.wi, s.diffuse);
       const bsdf::KindEval others = guided.evaluate(kDiffuse, wo, s.wi, !s.diffuse);
       ASSERT_NEAR(kinds.kind.pdf, s.kind.pdf, 1e-4f * s.pdf) << mix.name;
+      const float of_kind = plain.evaluate(kDiffuse, wo, s.wi, s.diffuse).kind.pdf;
+      ASSERT_NEAR(s.unguided_kind_pdf, of_kind, 1e-4f * of_kind) << mix.name;
+      const float kind_ratio = guided.guided_ratio(kDiffuse, wo, s.wi, s.diffuse);
+      ASSERT_NEAR(kind_ratio, of_kind > 0.0f ? kinds.kind.pdf / of_kind : 1.0f, 1e-4f * kind_ratio) << mix.name;
       ASSERT_NEAR(kinds.kind.pdf + others.kind.pdf, all.pdf, 1e-4f * all.pdf) << mix.name;
       ASSERT_EQ(kinds.all.pdf, all.pdf) << mix.name;
       ASSERT_GT(s.kind.pdf, 0.0f);
@@ -116,7 +123,7 @@ TEST(GuidedClosures, SampleAgreesWithEvaluate) {
 TEST(GuidedClosures, ValuesDoNotDependOnTheGuide) {
   Random random(8);
   for (const Mix& mix : mixes()) {
-    const bsdf::Closures guided = make_closures(mix.lobes, kView, true), plain = make_closures(mix.lobes, kView, false);
+    const bsdf::Closures guided = make_closures(mix.lobes, kView, 1.0f), plain = make_closures(mix.lobes, kView, 0.0f);
     bool differs = false;
     for (int i = 0; i < 500; ++i) {
       const Vec3 wi = tilted_direction(2.0f * random.get() - 1.0f, 6.2f * random.get());
@@ -137,7 +144,7 @@ TEST(GuidedClosures, ValuesDoNotDependOnTheGuide) {
 TEST(GuidedClosures, DirectionPdfDoesNotDependOnTheGuide) {
   Random random(10);
   for (const Mix& mix : mixes()) {
-    const bsdf::Closures guided = make_closures(mix.lobes, kView, true), plain = make_closures(mix.lobes, kView, false);
+    const bsdf::Closures guided = make_closures(mix.lobes, kView, 1.0f), plain = make_closures(mix.lobes, kView, 0.0f);
     for (int i = 0; i < 200; ++i) {
       const Vec3 wi = tilted_direction(2.0f * random.get() - 1.0f, 6.2f * random.get());
       EXPECT_NEAR(guided.unguided_pdf(kView, wi), plain.unguided_pdf(kView, wi), 1e-5f) << mix.name;
@@ -146,10 +153,24 @@ TEST(GuidedClosures, DirectionPdfDoesNotDependOnTheGuide) {
   }
 }
 
+// A path that is guided with probability p has p times the density with the guide, and the rest of that without.
+TEST(GuidedClosures, DensityIsMixedByTheProbability) {
+  Random random(12);
+  for (const Mix& mix : mixes()) {
+    const bsdf::Closures plain = make_closures(mix.lobes, kView, 0.0f), guided = make_closures(mix.lobes, kView, 1.0f),
+                         maybe = make_closures(mix.lobes, kView, 0.3f);
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 wi = tilted_direction(2.0f * random.get() - 1.0f, 6.2f * random.get());
+      const float a = plain.evaluate(kDiffuse, kView, wi).pdf, b = guided.evaluate(kDiffuse, kView, wi).pdf;
+      EXPECT_NEAR(maybe.evaluate(kDiffuse, kView, wi).pdf, 0.7f * a + 0.3f * b, 1e-5f + 1e-4f * b) << mix.name;
+    }
+  }
+}
+
 // The share of guided directions is that of the diffuse lobes alone.
 TEST(GuidedClosures, OnlyDiffuseLobesAreGuided) {
   const std::vector<bsdf::Lobe> glossy{make_lobe(bsdf::LobeType::GgxReflection, 0.3f)};
-  const bsdf::Closures guided = make_closures(glossy, kView, true), plain = make_closures(glossy, kView, false);
+  const bsdf::Closures guided = make_closures(glossy, kView, 1.0f), plain = make_closures(glossy, kView, 0.0f);
   Random random(9);
   for (int i = 0; i < 200; ++i) {
     const float u = random.get();
@@ -163,7 +184,7 @@ TEST(GuidedClosures, OnlyDiffuseLobesAreGuided) {
 
 // finish() for another view forgets the guide, which belongs to one side of the surface.
 TEST(GuidedClosures, FinishEndsTheGuide) {
-  bsdf::Closures closures = make_closures(mixes()[0].lobes, kView, true);
+  bsdf::Closures closures = make_closures(mixes()[0].lobes, kView, 1.0f);
   const Vec3 wi = tilted_direction(0.7f, 0.0f);
   const float guided = closures.evaluate(kDiffuse, kView, wi).pdf;
   closures.finish(kView, kTestNormal, 0.1f);

@@ -78,6 +78,26 @@ TEST(GuidingField, PointsFromTheFloorToASpotOfLight) {
   }
 }
 
+// The density of a path is a mean of those with and without a guide, however its vertices differ.
+TEST(GuidedProbability, MixesTheDensitiesOfWholePaths) {
+  Random random(5);
+  for (int path = 0; path < 1000; ++path) {
+    float ratio = 1.0f;   // density of the path over that without a guide
+    double guided = 1.0;  // the same if all vertices were guided
+    for (int vertex = 0; vertex < 8; ++vertex) {
+      const float here = std::exp(6.0f * (random.get() - 0.7f));
+      const float probability = guide::guided_probability(ratio);
+      ASSERT_GE(probability, 0.0f);
+      ASSERT_LT(probability, 1.0f);
+      ratio *= 1.0f - probability + probability * here;
+      guided *= here;
+      const double expected = guide::kUnguidedPaths + (1.0 - guide::kUnguidedPaths) * guided;
+      ASSERT_NEAR(ratio, expected, 1e-4 * expected);
+    }
+  }
+  EXPECT_EQ(guide::guided_probability(1.0f), 1.0f - guide::kUnguidedPaths);
+}
+
 TEST(GuidingField, UniformLightIsNotGuided) {
   const GuidingField field(sample_floor(uniform, 20000));
   EXPECT_EQ(field.guided_share(), 0.0f);

@@ -55,7 +55,7 @@ TEST(GuidePaths, AreAShareOfTheSamples) {
   EXPECT_EQ(paths_of(s, 8, frame).count, 60000u);
   EXPECT_EQ(paths_of(s, 4096, frame).count, paths_of(s, 1024, frame).count) << "at most so many";
   EXPECT_LE(paths_of(s, 4096, frame).count, 1000000u);
-  EXPECT_EQ(paths_of(s, 16, {0, 0, 200, 150}).count, 120000u) << "a part of the frame has the guide of the frame";
+  EXPECT_EQ(paths_of(s, 16, {0, 0, 400, 150}).count, 120000u) << "a part of the frame has the guide of the frame";
 }
 
 TEST(GuidePaths, AreLimitedByTheTime) {
@@ -70,8 +70,8 @@ TEST(GuidePaths, SayWhyThereAreNone) {
   GradusSettings s = make_settings(400, 300);
   const Region frame{0, 0, 400, 300};
   EXPECT_TRUE(contains(paths_of(s, 1, frame).why_not, "too few samples"));
-  EXPECT_TRUE(contains(paths_of(s, 64, {0, 0, 100, 74}).why_not, "small part of the frame"));
-  EXPECT_GT(paths_of(s, 64, {0, 0, 100, 75}).count, 0u) << "a sixteenth is enough";
+  EXPECT_TRUE(contains(paths_of(s, 64, {0, 0, 400, 149}).why_not, "small part of the frame"));
+  EXPECT_GT(paths_of(s, 64, {0, 0, 400, 150}).count, 0u) << "half is enough";
   s.max_bounces = 0;
   EXPECT_TRUE(contains(paths_of(s, 64, frame).why_not, "do not bounce"));
   s.max_bounces = 1;
@@ -196,7 +196,7 @@ TEST(GuidedRender, ResumeRefusesAnotherSetting) {
 TEST(GuidedRender, ARegionHasThePixelsOfTheFrame) {
   const auto whole = render_gap(make_settings());
   GradusSettings s = make_settings();
-  const Region region{20, 15, 45, 35};
+  const Region region{10, 5, 70, 55};
   const int32_t corners[] = {region.x0, region.y0, region.x1, region.y1};
   std::copy(corners, corners + 4, s.region);
   const auto part = render_gap(s);
