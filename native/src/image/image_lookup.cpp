@@ -5,38 +5,15 @@
 #include <numeric>
 
 #include "base/fault.h"
-#include "image/color.h"
 #include "image/image.h"
 #include "image/image_store.h"
+#include "image/srgb_table.h"
 
 namespace gradus::image {
 namespace {
 
 // Result of a look-up in an image or a UDIM tile that is absent: magenta.
 const Vec4 kMissing(1.0f, 0.0f, 1.0f, 1.0f);
-
-// The sRGB curve from a table with linear interpolation. It is exact in the linear segment of the curve; elsewhere its
-// error is about 1e-6. Values outside [0, 1) take the formula.
-class SrgbTable {
- public:
-  SrgbTable() {
-    for (size_t i = 0; i < values_.size(); i++) {
-      values_[i] = srgb_to_linear(static_cast<float>(i) / kSteps);
-    }
-  }
-  float operator()(float x) const {
-    if (!(x >= 0.0f && x < 1.0f)) {
-      return srgb_to_linear(x);
-    }
-    const float position = x * kSteps;
-    const size_t i = static_cast<size_t>(position);
-    return values_[i] + (values_[i + 1] - values_[i]) * (position - static_cast<float>(i));
-  }
-
- private:
-  static constexpr float kSteps = 1024.0f;
-  std::array<float, 1026> values_;
-};
 
 // Distance from a clipped image, in widths of it, at which coordinates are clamped. A look-up there is empty whatever
 // the image's size, because cubic weights reach only two texels beyond the border.
@@ -215,7 +192,7 @@ const ImageTile* find_tile(const Image& image, Vec2* uv) {
 }  // namespace
 
 Vec4 decode_texel(const ImageTile& tile, const Vec4& stored) {
-  static const SrgbTable table;
+  static const SrgbTable& table = srgb_table();
   const auto decoded = [](float value) { return table(GRADUS_FAULT(srgb_decoded_twice) ? table(value) : value); };
   return tile.srgb ? Vec4(decoded(stored.x), decoded(stored.y), decoded(stored.z), stored.w) : stored;
 }
