@@ -243,20 +243,20 @@ StructT = TypeVar("StructT", bound=Struct)
 _CODES = {"f": ctypes.c_float, "i": ctypes.c_int32, "I": ctypes.c_uint32, "Q": ctypes.c_uint64, "B": ctypes.c_uint8}
 
 
-def pointer(values: array | None) -> Any:
+def pointer(values: array | memoryview | None) -> Any:
     """Returns a typed pointer to an array('f'|'i'|'I'|'Q'|'B'), or NULL (None) for None or an empty array.
 
-    The pointer keeps the array alive. Raises TypeError for anything else, because a wrong item type would be read as
-    garbage.
+    The pointer keeps the array alive. A memoryview of such items may take its place. Raises TypeError for anything
+    else, because a wrong item type would be read as garbage.
     """
     if values is None:
         return None
-    if not isinstance(values, array) or values.typecode not in _CODES:
-        found = f"{type(values).__name__} {getattr(values, 'typecode', '')}"
-        raise TypeError(f"expected array('f'|'i'|'I'|'Q'|'B'), got {found}")
+    code = values.format if isinstance(values, memoryview) else getattr(values, "typecode", "")
+    if not isinstance(values, array | memoryview) or code not in _CODES:
+        raise TypeError(f"expected array('f'|'i'|'I'|'Q'|'B'), got {type(values).__name__} {code}")
     if not values:
         return None
-    kind = _CODES[values.typecode]
+    kind = _CODES[code]
     return ctypes.cast((kind * len(values)).from_buffer(values), ctypes.POINTER(kind))
 
 

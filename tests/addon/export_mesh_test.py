@@ -61,6 +61,20 @@ def test_byte_colours_are_linear(scene: bpy.types.Scene, domain: str, count: int
     assert np.allclose(np.array(found.data).reshape(count, 4), (linear, 1.0, 0.0, 1.0), atol=5e-3)
 
 
+@pytest.mark.parametrize("kind, key", [("FLOAT", "value"), ("FLOAT_COLOR", "color"), ("BYTE_COLOR", "color")])
+def test_arrays_without_copies_are_equal(scene: bpy.types.Scene, kind: str, key: str) -> None:
+    mesh = recording.grid(3)
+    layer = mesh.attributes.new("Wanted", kind, "CORNER")
+    for i, item in enumerate(layer.data):
+        setattr(item, key, i / 64 if key == "value" else (i / 64, 0.5, 0.25, 1.0))
+    for i, polygon in enumerate(mesh.polygons):
+        polygon.use_smooth, polygon.material_index = i % 2 == 0, i % 3
+    copied, viewed = (read_mesh(mesh, frozenset({"Wanted"}), is_kept=is_kept) for is_kept in (True, False))
+    assert isinstance(viewed.positions, memoryview)
+    assert isinstance(viewed.normals, memoryview)
+    assert viewed.content_hash() == copied.content_hash()
+
+
 def test_only_requested_attributes_are_read(scene: bpy.types.Scene) -> None:
     mesh = recording.grid(2)
     mesh.uv_layers.new(name="Second")

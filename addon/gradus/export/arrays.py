@@ -6,14 +6,23 @@ it reads item by item, and ctypes arrays take a hundred times as long.
 
 from __future__ import annotations
 
+import ctypes
 from array import array
+from collections.abc import Callable
 from typing import Any
+
+Values = array | memoryview
+Reader = Callable[..., Values]  # read() or view()
+
+_memory_view = ctypes.pythonapi.PyMemoryView_FromMemory
+_memory_view.argtypes = (ctypes.c_void_p, ctypes.c_ssize_t, ctypes.c_int)
+_memory_view.restype = ctypes.py_object
+_WRITABLE = 0x200  # PyBUF_WRITE: ctypes makes pointers to nothing else
 
 
 def zeros(typecode: str, count: int) -> array:
     """Returns an array of `count` zeros."""
-    values = array(typecode)
-    return array(typecode, bytes(values.itemsize * count))
+    return array(typecode, (0,)) * count
 
 
 def read(collection: Any, attribute: str, typecode: str, per_item: int = 1) -> array:
@@ -22,6 +31,22 @@ def read(collection: Any, attribute: str, typecode: str, per_item: int = 1) -> a
     if values:
         collection.foreach_get(attribute, values)
     return values
+
+
+def view(collection: Any, attribute: str, typecode: str, per_item: int = 1) -> Values:
+    """Returns the values of read() where Blender stores them, without a copy of large arrays.
+
+    They are valid until Blender changes or frees them. The items of the collection must consist of these values alone,
+    which shows in their addresses; others are copied.
+    """
+    count = len(collection)
+    if count < 2:
+        return read(collection, attribute, typecode, per_item)
+    first, last = collection[0].as_pointer(), collection[count - 1].as_pointer()
+    size = array(typecode).itemsize * per_item
+    if last - first != size * (count - 1):
+        return read(collection, attribute, typecode, per_item)
+    return _memory_view(first, size * count, _WRITABLE).cast(typecode)
 
 
 def matrix_values(matrix: Any) -> array:

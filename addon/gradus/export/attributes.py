@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .. import compat, native
-from .arrays import read
+from .arrays import Reader, Values, read
 from .edges import on_vertices
 
 _DOMAINS = {"POINT": 0, "FACE": 1, "CORNER": 2}
@@ -31,7 +31,7 @@ class AttributeArrays:
     name: str
     domain: int
     channels: int
-    data: array
+    data: Values
     is_uv: bool = False
 
 
@@ -59,19 +59,20 @@ def default_color(mesh: Any) -> str:
     return layers[index].name if 0 <= index < len(layers) else ""
 
 
-def _read_uv(layer: Any) -> array:
+def _read_uv(layer: Any, get: Reader) -> Values:
     if hasattr(layer, "uv"):
-        return read(layer.uv, "vector", "f", 2)
+        return get(layer.uv, "vector", "f", 2)
     return read(layer.data, "uv", "f", 2)
 
 
-def read_values(attribute: Any) -> tuple[int, array] | None:
+def read_values(attribute: Any, get: Reader = read) -> tuple[int, Values] | None:
     """Returns the number of channels and the values of an attribute as floats, or None if it holds no numbers."""
     if attribute.data_type not in _TYPES:
         return None
     prop, typecode, channels = _TYPES[attribute.data_type]
-    data = read(attribute.data, prop, typecode, channels)
-    return channels, data if typecode == "f" else array("f", data)
+    if typecode == "f":
+        return channels, get(attribute.data, prop, typecode, channels)
+    return channels, array("f", read(attribute.data, prop, typecode, channels))
 
 
 def _decoded_bytes(attribute: Any) -> array:
@@ -84,9 +85,9 @@ def _decoded_bytes(attribute: Any) -> array:
     return data
 
 
-def _read_generic(mesh: Any, attribute: Any, name: str) -> AttributeArrays | None:
+def _read_generic(mesh: Any, attribute: Any, name: str, get: Reader) -> AttributeArrays | None:
     """Returns an attribute of any domain. Values of edges become values of vertices, as in Cycles."""
-    values = read_values(attribute)
+    values = read_values(attribute, get)
     if values is None:
         return None
     channels, data = values
@@ -99,16 +100,18 @@ def _read_generic(mesh: Any, attribute: Any, name: str) -> AttributeArrays | Non
     return AttributeArrays(name, _DOMAINS[domain], channels, data, is_uv)
 
 
-def read_attributes(mesh: Any, wanted: frozenset[str] | None, uv_name: str) -> list[AttributeArrays]:
+def read_attributes(
+    mesh: Any, wanted: frozenset[str] | None, uv_name: str, get: Reader = read
+) -> list[AttributeArrays]:
     """Returns the attributes of a mesh whose names are in `wanted` (None for all), and the UV map `uv_name`.
 
-    The name "" stands for the colour attribute that is active for renders.
+    The name "" stands for the colour attribute that is active for renders. get: reads collections, copying or not.
     """
     found = []
     uv_layers = {layer.name: layer for layer in mesh.uv_layers}
     for name, layer in uv_layers.items():
         if name == uv_name or wanted is None or name in wanted:
-            data = _read_uv(layer)
+            data = _read_uv(layer, get)
             if len(data):
                 found.append(AttributeArrays(name, _DOMAINS["CORNER"], 2, data, is_uv=True))
     for attribute in mesh.attributes:
@@ -116,12 +119,12 @@ def read_attributes(mesh: Any, wanted: frozenset[str] | None, uv_name: str) -> l
         if name in uv_layers or (name.startswith(".") and (wanted is None or name not in wanted)):
             continue
         if name == uv_name or wanted is None or name in wanted:
-            arrays = _read_generic(mesh, attribute, name)
+            arrays = _read_generic(mesh, attribute, name, get)
             if arrays is not None and len(arrays.data):
                 found.append(arrays)
     if wanted is not None and "" in wanted:
         color = mesh.color_attributes.get(default_color(mesh))
-        arrays = _read_generic(mesh, color, "") if color is not None else None
+        arrays = _read_generic(mesh, color, "", get) if color is not None else None
         if arrays is not None:
             found.append(arrays)
     return found

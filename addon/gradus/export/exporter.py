@@ -256,8 +256,9 @@ class _Sync:
             if shape not in keys:
                 self._poll()
                 keys[shape] = 0
-                arrays = self._read_mesh(entry, wanted)
-                if arrays is not None and self._wanted.any() and motion.may_deform(entry):
+                may_deform = self._wanted.any() and motion.may_deform(entry)
+                arrays = self._read_mesh(entry, wanted, may_deform)
+                if arrays is not None and may_deform:
                     deforming[shape] = Deforming(shape, arrays, entry.name, arrays.motion is not None)
                 elif arrays is not None:
                     keys[shape] = self._set_mesh(arrays)
@@ -265,14 +266,14 @@ class _Sync:
                 self._deforming[entry.key] = deforming[shape]
         return keys
 
-    def _read_mesh(self, entry: Entry, wanted: frozenset[str]) -> MeshArrays | None:
+    def _read_mesh(self, entry: Entry, wanted: frozenset[str], is_kept: bool) -> MeshArrays | None:
         original = entry.object.original
         has_shape_keys = getattr(original.data, "shape_keys", None) is not None
         may_deform = original.modifiers or has_shape_keys or motion.is_deformed_by_parent(original)
         undeformed = original.data if original.type == "MESH" and may_deform else None
         if len(entry.data.polygons) == 0:
             return None
-        arrays = mesh.read_mesh(entry.data, wanted, undeformed, self._materials.reads_edges)
+        arrays = mesh.read_mesh(entry.data, wanted, undeformed, self._materials.reads_edges, is_kept)
         arrays.dicing = dicing_of(original, self._scene.original, self.size[0], self._is_preview)
         frames_per_second = self._scene.render.fps / self._scene.render.fps_base
         if self._wanted.vectors:

@@ -13,7 +13,7 @@ from typing import Any
 
 from .. import native
 from . import attributes
-from .arrays import read
+from .arrays import Reader, Values, read, view
 from .dicing import NO_DICING, Dicing
 from .edges import edge_vertices
 
@@ -25,14 +25,14 @@ class MeshArrays:
     """The data of a GradusMesh."""
 
     name: str
-    positions: array
-    corner_vertices: array
-    triangle_corners: array
-    triangle_faces: array
+    positions: Values
+    corner_vertices: Values
+    triangle_corners: Values
+    triangle_faces: Values
     face_count: int
-    face_materials: array | None = None
+    face_materials: Values | None = None
     normal_domain: int = FACE
-    normals: array | None = None
+    normals: Values | None = None
     attributes: list[attributes.AttributeArrays] = field(default_factory=list)
     default_uv: str = ""
     texture_space: tuple[float, ...] = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0)
@@ -70,38 +70,38 @@ class MeshArrays:
         return digest.digest()
 
 
-def read_positions(mesh: Any) -> array:
+def read_positions(mesh: Any, get: Reader = read) -> Values:
     """Returns 3 floats per vertex."""
     position = mesh.attributes.get("position")
     if position is not None and position.data_type == "FLOAT_VECTOR":
-        return read(position.data, "vector", "f", 3)
+        return get(position.data, "vector", "f", 3)
     return read(mesh.vertices, "co", "f", 3)
 
 
-def corner_vertices(mesh: Any) -> array:
+def corner_vertices(mesh: Any, get: Reader = read) -> Values:
     """Returns the vertex of each corner."""
     stored = mesh.attributes.get(".corner_vert")
     if stored is not None:
-        return read(stored.data, "value", "i")
+        return get(stored.data, "value", "i")
     values = read(mesh.loops, "vertex_index", "I")
     return array("i", values.tobytes())
 
 
-def _triangle_faces(mesh: Any) -> array:
+def _triangle_faces(mesh: Any, get: Reader) -> Values:
     if hasattr(mesh, "loop_triangle_polygons"):
-        return read(mesh.loop_triangle_polygons, "value", "i")
+        return get(mesh.loop_triangle_polygons, "value", "i")
     values = read(mesh.loop_triangles, "polygon_index", "I")
     return array("i", values.tobytes())
 
 
-def _normals(mesh: Any) -> tuple[int, array | None]:
+def _normals(mesh: Any, get: Reader) -> tuple[int, Values | None]:
     """Returns domain and values of the shading normals."""
     if hasattr(mesh, "corner_normals"):
         if mesh.normals_domain == "FACE":
             return FACE, None
         if mesh.normals_domain == "POINT":
-            return POINT, read(mesh.vertex_normals, "vector", "f", 3)
-        return CORNER, read(mesh.corner_normals, "vector", "f", 3)
+            return POINT, get(mesh.vertex_normals, "vector", "f", 3)
+        return CORNER, get(mesh.corner_normals, "vector", "f", 3)
     return _normals_by_flags(mesh)
 
 
@@ -135,37 +135,40 @@ def _without_vertex_normals(mesh: Any, normals: array) -> array:
     return array("f", kept.astype(np.int32).tobytes())
 
 
-def _face_materials(mesh: Any) -> array | None:
+def _face_materials(mesh: Any, get: Reader) -> Values | None:
     """Returns the material slot of each face, or None if all faces use slot 0."""
     stored = mesh.attributes.get("material_index")
     if stored is None or stored.domain != "FACE" or stored.data_type != "INT":
         return None
-    return read(stored.data, "value", "i")
+    return get(stored.data, "value", "i")
 
 
-def read_mesh(mesh: Any, wanted: frozenset[str] | None, original: Any = None, with_edges: bool = False) -> MeshArrays:
+def read_mesh(
+    mesh: Any, wanted: frozenset[str] | None, original: Any = None, with_edges: bool = False, is_kept: bool = True
+) -> MeshArrays:
     """Reads an evaluated mesh.
 
     wanted: names of the attributes that materials use, None for all; the UV map that is active for renders is always
     read. original: the mesh before its modifiers, if they may have deformed it. with_edges: whether the library needs
-    edges.
+    edges. is_kept: whether the arrays are used after Blender may have changed or freed the mesh, which takes copies.
     """
+    get = read if is_kept else view
     mesh.calc_loop_triangles()
-    domain, normals = _normals(mesh)
+    domain, normals = _normals(mesh, get)
     arrays = MeshArrays(
         name=mesh.name,
-        positions=read_positions(mesh),
-        corner_vertices=corner_vertices(mesh),
-        triangle_corners=read(mesh.loop_triangles, "loops", "I", 3),
-        triangle_faces=_triangle_faces(mesh),
+        positions=read_positions(mesh, get),
+        corner_vertices=corner_vertices(mesh, get),
+        triangle_corners=get(mesh.loop_triangles, "loops", "I", 3),
+        triangle_faces=_triangle_faces(mesh, get),
         face_count=len(mesh.polygons),
-        face_materials=_face_materials(mesh),
+        face_materials=_face_materials(mesh, get),
         normal_domain=domain,
         normals=normals,
         default_uv=attributes.default_uv(mesh),
         texture_space=(*mesh.texspace_location, *mesh.texspace_size),
     )
-    arrays.attributes = attributes.read_attributes(mesh, wanted, arrays.default_uv)
+    arrays.attributes = attributes.read_attributes(mesh, wanted, arrays.default_uv, get)
     if with_edges:
         arrays.edge_vertices = edge_vertices(mesh)
     if original is not None:
@@ -173,7 +176,7 @@ def read_mesh(mesh: Any, wanted: frozenset[str] | None, original: Any = None, wi
     return arrays
 
 
-def _generated_points(mesh: Any, positions: array, original: Any) -> array | None:
+def _generated_points(mesh: Any, positions: Values, original: Any) -> array | None:
     """Returns the positions that generated coordinates are made of, or None if they are those of the mesh."""
     # For final renders, Blender carries them along through all modifiers, those that add vertices, too.
     carried = read(mesh.vertices, "undeformed_co", "f", 3)
@@ -191,7 +194,7 @@ def fill_mesh(arrays: MeshArrays) -> tuple[native.Mesh, list[Any]]:
     positions, times = arrays.positions, None
     struct.key_count = 1
     if arrays.motion is not None:
-        positions = arrays.motion[0] + arrays.positions + arrays.motion[1]
+        positions = array("f", b"".join((arrays.motion[0], arrays.positions, arrays.motion[1])))
         times = array("f", [-1.0, 0.0, 1.0])
         struct.key_count = 3
     struct.key_times = native.pointer(times)

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <memory>
 #include <new>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace gradus {
@@ -31,9 +34,19 @@ struct HugePageAllocator {
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, size_t) { std::free(memory); }
+  // Leaves the elements that resize() adds as they are, so that the threads that compute them touch their pages first.
+  template <class U>
+  void construct(U*) {
+    static_assert(std::is_trivially_copyable_v<U> && std::is_trivially_destructible_v<U>);
+  }
+  template <class U, class First, class... Rest>
+  void construct(U* element, First&& first, Rest&&... rest) {
+    std::construct_at(element, std::forward<First>(first), std::forward<Rest>(rest)...);
+  }
   friend bool operator==(const HugePageAllocator&, const HugePageAllocator&) { return true; }
 };
 
+// resize() leaves new elements uninitialised.
 template <class T>
 using HugePageVector = std::vector<T, HugePageAllocator<T>>;
 

@@ -135,6 +135,13 @@ std::vector<float> copy_finite(const float* data, size_t count) {
     if (!is_finite(v)) v = 0.0f;
   return values;
 }
+// Copies vectors of three values, with 0 in place of NaN and infinity.
+std::vector<Vec3> copy_finite_vectors(const float* data, size_t count) {
+  std::vector<Vec3> vectors(count);
+  for (size_t i = 0; i < count; ++i)
+    for (int c = 0; c < 3; ++c) vectors[i][c] = is_finite(data[3 * i + c]) ? data[3 * i + c] : 0.0f;
+  return vectors;
+}
 
 // Replaces corner normals of length 0 by the smooth normal of the vertex.
 void fill_smooth_corners(const GradusMesh& m, MeshData* out) {
@@ -151,9 +158,7 @@ void copy_normals(const GradusMesh& m, MeshData* out) {
   if (!m.normals && m.normal_domain == GRADUS_DOMAIN_POINT) out->normals = smooth_normals(*out, out->frame_positions());
   if (!m.normals || m.normal_domain == GRADUS_DOMAIN_FACE) return;
   const size_t count = domain_size(m, m.normal_domain);
-  const std::vector<float> values = copy_finite(m.normals, count * 3);
-  out->normals.resize(count);
-  if (count) std::memcpy(out->normals.data(), values.data(), count * sizeof(Vec3));
+  out->normals = copy_finite_vectors(m.normals, count);
   if (m.normal_domain == GRADUS_DOMAIN_CORNER) fill_smooth_corners(m, out);
 }
 
@@ -179,9 +184,7 @@ void copy_generated(const GradusMesh& m, MeshData* out) {
     out->generated_size[i] = sized ? m.generated_size[i] : 1.0f;
   }
   if (!m.generated_points || m.vertex_count == 0) return;
-  const std::vector<float> values = copy_finite(m.generated_points, m.vertex_count * 3);
-  out->generated_points.resize(m.vertex_count);
-  std::memcpy(out->generated_points.data(), values.data(), m.vertex_count * sizeof(Vec3));
+  out->generated_points = copy_finite_vectors(m.generated_points, m.vertex_count);
 }
 
 void copy_dicing(const GradusMesh& m, MeshData* out) {

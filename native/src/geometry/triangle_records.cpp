@@ -9,13 +9,16 @@ TriangleRecords make_triangle_records(const MeshData& mesh, const Vec3* position
   records.triangles.resize(mesh.triangle_count);
   if (has_smooth_normals(mesh)) records.normals.resize(mesh.triangle_count);
   const auto make = [&](uint32_t i) {
-    if (mesh.is_dropped(i)) return;
+    const bool has_normals = !records.normals.empty();
+    if (mesh.is_dropped(i)) {
+      records.triangles[i] = {};
+      if (has_normals) records.normals[i] = {};
+      return;
+    }
     const uint32_t* v = mesh.triangle_vertices.data() + size_t(i) * 3;
-    TriangleRecord& triangle = records.triangles[i];
-    triangle.corners = {positions[v[0]], positions[v[1]], positions[v[2]]};
-    triangle.plane = plane_of(triangle.corners);
-    triangle.slot = mesh.material_slot(i);
-    if (records.normals.empty()) return;
+    const std::array<Vec3, 3> corners = {positions[v[0]], positions[v[1]], positions[v[2]]};
+    records.triangles[i] = {corners, plane_of(corners), mesh.material_slot(i)};
+    if (!has_normals) return;
     triangle_normals(mesh, i, &records.normals[i].corners);
     for (Vec3& normal : records.normals[i].corners) normal = normal_to_space * normal;
   };

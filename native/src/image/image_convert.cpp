@@ -1,6 +1,7 @@
 #include "image/image_convert.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -198,6 +199,34 @@ Vec4 expand(const T* v, uint32_t channels, ToFloat&& to_float) {
   return Vec4(first, to_float(v[1]), to_float(v[2]), channels == 4 ? to_float(v[3]) : 1.0f);
 }
 
+using DecodedBytes = std::array<float, 256>;
+
+// Returns the scene-linear values of all bytes.
+DecodedBytes decoded_bytes(const ImageTile& tile) {
+  DecodedBytes decoded;
+  for (size_t i = 0; i < decoded.size(); ++i)
+    decoded[i] = decode_texel(tile, Vec4(static_cast<float>(i) * (1.0f / 255.0f))).x;
+  return decoded;
+}
+
+// Returns the scene-linear colour of a texel of bytes. Grey fills all colours.
+Rgb byte_color(const ImageTile& tile, const DecodedBytes& decoded, size_t index) {
+  const uint8_t* v = tile.pixels.get() + index * tile.channels;
+  return tile.channels <= 2 ? Rgb(decoded[v[0]]) : Rgb(decoded[v[0]], decoded[v[1]], decoded[v[2]]);
+}
+
+// Returns the mean of color(index) over at most about a million texels of a tile.
+template <class ColorAt>
+Rgb mean_of_texels(const ImageTile& tile, const ColorAt& color) {
+  const uint64_t count = static_cast<uint64_t>(tile.width) * tile.height;
+  // The step is odd, so that images with a power of two as width are not sampled in the same columns of each row.
+  const uint64_t step = (count >> 20) | 1u;
+  glm::dvec3 sum(0.0);
+  uint64_t n = 0;
+  for (uint64_t i = 0; i < count; i += step, n++) sum += glm::dvec3(color(i));
+  return Rgb(sum * (n > 0 ? 1.0 / static_cast<double>(n) : 0.0));
+}
+
 }  // namespace
 
 Vec4 ImageTile::texel(uint32_t x, uint32_t y) const {
@@ -245,20 +274,12 @@ ImageTile convert_tile(DecodedImage decoded, const ColorManager& color, const st
 }
 
 Rgb mean_color(const ImageTile& tile) {
-  const uint64_t count = static_cast<uint64_t>(tile.width) * tile.height;
-  // The step is odd, so that images with a power of two as width are not sampled in the same columns of each row.
-  const uint64_t step = (count >> 20) | 1u;
-  double sum[3] = {0.0, 0.0, 0.0};
-  uint64_t n = 0;
-  for (uint64_t i = 0; i < count; i += step, n++) {
-    const Vec4 v =
-        decode_texel(tile, tile.texel(static_cast<uint32_t>(i % tile.width), static_cast<uint32_t>(i / tile.width)));
-    sum[0] += static_cast<double>(v.x);
-    sum[1] += static_cast<double>(v.y);
-    sum[2] += static_cast<double>(v.z);
-  }
-  const double scale = n > 0 ? 1.0 / static_cast<double>(n) : 0.0;
-  return {static_cast<float>(sum[0] * scale), static_cast<float>(sum[1] * scale), static_cast<float>(sum[2] * scale)};
+  return tile.format == PixelFormat::Byte
+             ? mean_of_texels(tile,
+                              [&, decoded = decoded_bytes(tile)](size_t i) { return byte_color(tile, decoded, i); })
+             : mean_of_texels(tile, [&](size_t i) {
+                 return Rgb(decode_texel(tile, tile.texel(uint32_t(i % tile.width), uint32_t(i / tile.width))));
+               });
 }
 
 bool has_transparency(const ImageTile& tile) {

@@ -10,7 +10,7 @@
 namespace gradus::image {
 
 // The sRGB curve from a table with linear interpolation. It is exact in the linear segment of the curve; elsewhere its
-// error is about 1e-6. Values outside [0, 1) take the formula.
+// error is about 1e-6. Values outside [0, 1] take the formula.
 class SrgbTable {
  public:
   SrgbTable() {
@@ -28,7 +28,7 @@ class SrgbTable {
   }
   // Decodes eight values. The results are those of the function above, to the bit.
   FloatLanes operator()(FloatLanes x) const {
-    const uint32_t inside = mask_of((SignedLanes)((x >= 0.0f) & (x < 1.0f)));
+    const uint32_t inside = mask_of((SignedLanes)((x >= 0.0f) & (x <= 1.0f)));
     const FloatLanes position = (inside == kAllLanes ? x : minimum(maximum(x, FloatLanes{}), kLast)) * kSteps;
     const __m256i i = _mm256_cvttps_epi32((__m256)position);
     const auto low = (FloatLanes)_mm256_i32gather_ps(values_.data(), i, sizeof(float));
@@ -44,7 +44,7 @@ class SrgbTable {
   static constexpr float kSteps = 1024.0f;
   static constexpr uint32_t kAllLanes = (1u << kLanes) - 1;
   static constexpr FloatLanes kLast = FloatLanes{} + 1.0f;
-  static bool is_inside(float x) { return x >= 0.0f && x < 1.0f; }
+  static bool is_inside(float x) { return x >= 0.0f && x <= 1.0f; }
   std::array<float, 1026> values_;
 };
 
