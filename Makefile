@@ -65,7 +65,7 @@ bench-errors:   ## stills: error against CPU time next to Cycles and Mitsuba: SC
 bench-quick:    ## the same for two scenes, in under five minutes
 bench-agreement: ## stills: converged images against those of Cycles and Mitsuba: SCENES=a,b WIDTH=160 REFERENCE=1024
 bench-pictures: ## stills: pictures and error maps of the project's own scenes: SCENES=hero
-bench-speed:    ## CPU time of a sample in rooms of 1 k to 2 M triangles next to Cycles: ROOMS=room-1k REPEATS=3
+bench-speed:    ## CPU time of a sample in rooms of 1 k to 2 M triangles beside Cycles: ROOMS=room-1k REPEATS=3 STARTS=1
 bench-paths:    ## variance and CPU time of a sample in scenes next to Cycles: SCENES=a,b SPEED_WIDTH=640
 bench-profiles: ## where the time of plain paths goes: flame graphs, and the share of ray tracing: SCENES=a,b
 bench-reconstruct: ## CPU time of the reconstructions at 1920x1080: REPEATS=3

@@ -9,7 +9,7 @@
 #   SIZE=320x180  FRAMES=24  BLUR=1  CHECKED=8 (frames that have a reference)  QUICK=1 (two animations)
 #   MEASURES=truth,flicker  REPEATS=3  LOADED=1 (the machine has other work)
 #   NAME=kitchen  STORES=a,b  REFERENCES=a,b  CROP=60,60,160,90  DESIGNS=svgf,nfor-frames
-#   ROOMS=room-1k  SPEED_WIDTH=640  OLD=commit  NEW=commit
+#   ROOMS=room-1k  SPEED_WIDTH=640  STARTS=1 (start-up alone)  OLD=commit  NEW=commit
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 part=${1:?which part? see the head of tools/bench.sh}
@@ -43,7 +43,7 @@ agreement() { run agreement.py scenes width samples=REFERENCE; }
 pictures() { run pictures.py scenes; }
 paths() { run path_tracing.py scenes width=SPEED_WIDTH minutes; }
 profiles() { run profiles.py scenes width=SPEED_WIDTH minutes; }
-speed() { run speed.py rooms width=SPEED_WIDTH repeats minutes; }
+speed() { run speed.py rooms width=SPEED_WIDTH repeats minutes ${STARTS:+--starts}; }
 reconstruct() { run reconstruction_time.py repeats; }
 animation() { run animation.py "${limits[@]}" size frames checked ${BLUR:+--blur} ${QUICK:+--quick}; }
 motion() { run motion.py "${limits[@]}" size frames measures repeats ${BLUR:+--blur} ${LOADED:+--loaded}; }

@@ -1,10 +1,13 @@
 """Measures the CPU time of a sample in a room (room.py): Gradus against Cycles, and gradients against plain paths.
 
-    speed.py [--rooms room-1k,room-2m] [--width 1280] [--repeats 3] [--minutes 60]
+    speed.py [--rooms room-1k,room-2m] [--width 1280] [--repeats 3] [--minutes 60] [--starts]
 
 The measure is the slope of the process's CPU time between 4 and 16 samples, so that export and build drop out. Modes
 take turns, repeat by repeat; ratios are taken within a repeat. Every render is appended to
 out/bench/results/speed.jsonl; one that is there is not repeated.
+
+With --starts it measures what comes before the first sample instead: the CPU time of one sample of a tiny picture, in a
+new process for each render. These renders are appended to out/bench/results/start.jsonl.
 """
 
 from __future__ import annotations
@@ -22,6 +25,9 @@ from runs import names_of
 from version import conditions, version_of_build
 
 RESULTS = records.file_of("speed")
+STARTS = records.file_of("start")
+START_MODES = ("path", "cycles")
+START_SIZE = (64, 36)
 SAMPLES = (4, 16)
 IDENTITY = ("room", "width", "version", "blender", "mode", "samples", "repeat")  # columns that identify a run
 Spread = tuple[float, float, float]  # median, minimum, maximum
@@ -61,6 +67,26 @@ def measure(room: str, width: int, repeats: int, deadline: float) -> None:
             print(f"{room:12} {job['mode']:14} {job['samples']:3} spp {answer['cpu']:8.2f} CPU-s", flush=True)
     finally:
         worker.close()
+
+
+def measure_start(room: str, repeats: int) -> None:
+    """Measures the start-up of each engine and prints the medians and their ratio."""
+    fixed = {"room": room} | conditions(version_of_build())
+    found: dict[str, dict[int, float]] = {mode: {} for mode in START_MODES}
+    for repeat in range(repeats):
+        for mode in START_MODES:
+            worker = blender_worker("speed_worker.py", room, *START_SIZE)
+            try:
+                facts = worker.answer()
+                answer = worker.ask({"mode": mode, "samples": 1, "seed": repeat})
+            finally:
+                worker.close()
+            records.append(fixed | facts | {"mode": mode, "repeat": repeat} | answer, STARTS)
+            found[mode][repeat] = answer["cpu"]
+    ours, theirs = (float(np.median(list(found[mode].values()))) for mode in START_MODES)
+    spread = ratio(*(found[mode] for mode in START_MODES))
+    text = "" if spread is None else f"{spread[0]:.2f} ({spread[1]:.2f} to {spread[2]:.2f})"
+    print(f"{room:12} start-up {ours:.2f} CPU-s, Cycles {theirs:.2f} CPU-s, ratio {text}", flush=True)
 
 
 def works(worker: Worker, mode: str) -> bool:
@@ -127,7 +153,12 @@ def main() -> None:
     parser.add_argument("--width", type=int, default=1280)
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--minutes", type=float, default=600.0)
+    parser.add_argument("--starts", action="store_true", help="measure start-up instead")
     arguments = parser.parse_args()
+    if arguments.starts:
+        for room in (name for name in arguments.rooms if set(START_MODES) <= set(ROOMS[name].modes)):
+            measure_start(room, arguments.repeats)
+        return
     deadline = time.monotonic() + 60.0 * arguments.minutes
     for room in arguments.rooms:
         measure(room, arguments.width, arguments.repeats, deadline)
