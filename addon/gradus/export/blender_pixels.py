@@ -82,12 +82,18 @@ def _with_settings_of(image: Any, other: Any, alpha_mode: str) -> Pixels | None:
 
 
 def _to_bytes(values: array) -> array:
-    """Returns the bytes that Blender stores, which it hands out as floats of four times their size."""
+    """Returns the bytes that Blender stores, which it hands out as floats of four times their size.
+
+    The floats are overwritten.
+    """
     try:
         import numpy as np  # imported late, because few images come from Blender and the import is slow
     except ImportError:  # Blender 3.4 of Debian has no NumPy of its own
         return values
-    return array("B", np.rint(np.frombuffer(values, np.float32) * 255.0).astype(np.uint8).tobytes())
+    floats, stored = np.frombuffer(values, np.float32), zeros("B", len(values))
+    np.multiply(floats, 255.0, out=floats)  # without temporary arrays, whose pages take longer than the arithmetic
+    np.copyto(np.frombuffer(stored, np.uint8), np.rint(floats, out=floats), casting="unsafe")
+    return stored
 
 
 def _to_rgba(values: Any, channels: int) -> Any:

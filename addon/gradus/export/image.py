@@ -272,7 +272,8 @@ def warning(image: Any, number: int | None, abspath: Any) -> str:
             f"Image '{image.name}' is channel-packed, and Cycles before Blender 5.0 divides colours of its colour "
             "space by the fourth channel"
         )
-    if file_pixels.is_available() or not _head(_path(image, number, abspath)).startswith(_FILM_SCANS):
+    # OpenImageIO is looked for last, because its import takes longer than most exports.
+    if not _head(_path(image, number, abspath)).startswith(_FILM_SCANS) or file_pixels.is_available():
         return ""
     return f"Image '{image.name}' is shown in linear values, while Cycles shows the film densities of its file"
 
