@@ -257,7 +257,7 @@ def pointer(values: array | memoryview | None) -> Any:
     if not values:
         return None
     kind = _CODES[code]
-    return ctypes.cast((kind * len(values)).from_buffer(values), ctypes.POINTER(kind))
+    return ctypes.pointer(kind.from_buffer(values))  # to the first value: a type for each length would stay in memory
 
 
 def text(value: str | None) -> bytes | None:
