@@ -83,7 +83,8 @@ bool light_classes(const PathContext& context, const Vertex& vertex, const Light
                    const shading::RayState& ray, LitClass lit[bsdf::kPathEvents]) {
   bool any = false;
   for (int k = 0; k < bsdf::kPathEvents; ++k) {
-    lit[k] = light_class(context, vertex, static_cast<bsdf::ScatterClass>(k), light, ray);
+    const auto c = static_cast<bsdf::ScatterClass>(k);
+    lit[k] = vertex.shade.closures.has_smooth(c) ? light_class(context, vertex, c, light, ray) : LitClass{};
     any |= !is_black(lit[k].value);
   }
   return any;
