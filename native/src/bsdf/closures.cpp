@@ -201,6 +201,7 @@ void Closures::add_entries(int index, const Vec3& wo, float roughness_threshold)
   float reflected = mean_component(albedo.reflected);
   float transmitted = mean_component(albedo.transmitted);
   const uint8_t sides = sides_of(lobe.type);
+  transmits_ = transmits_ || (!is_dirac(lobe.type) && (sides & kTransmits) != 0);
   const float minimum = is_dirac(lobe.type) ? 0.0f : kSmallestShare * mean_component(lobe.weight);
   reflected = sides & kReflects ? std::max(reflected, minimum) : 0.0f;
   transmitted = sides & kTransmits ? std::max(transmitted, minimum) : 0.0f;
@@ -286,6 +287,7 @@ void Closures::finish(const Vec3& wo, const Vec3& geometric_normal, float roughn
   drop_black_lobes();
   keep_originals();
   ignores_wo_ = true;
+  transmits_ = false;
   if (is_one_lambert() && !tilts_diffuse()) {
     finish_lambert();
     return;

@@ -48,21 +48,17 @@ enum class LobeType : uint8_t {
 
 // Bit mask of the sides of the surface to which a lobe scatters.
 enum : uint8_t { kReflects = 1, kTransmits = 2, kBothSides = 3 };
-constexpr uint8_t sides_of(LobeType type) {
-  switch (type) {
-    case LobeType::Translucent:
-    case LobeType::GgxRefraction:
-    case LobeType::BeckmannRefraction:
-    case LobeType::DiracRefraction:
-      return kTransmits;
-    case LobeType::GgxGlass:
-    case LobeType::BeckmannGlass:
-    case LobeType::DiracGlass:
-      return kBothSides;
-    default:
-      return kReflects;
-  }
-}
+inline constexpr auto kSides = [] {
+  std::array<uint8_t, static_cast<size_t>(LobeType::Count)> sides;
+  sides.fill(kReflects);
+  for (const LobeType type :
+       {LobeType::Translucent, LobeType::GgxRefraction, LobeType::BeckmannRefraction, LobeType::DiracRefraction})
+    sides[static_cast<size_t>(type)] = kTransmits;
+  for (const LobeType type : {LobeType::GgxGlass, LobeType::BeckmannGlass, LobeType::DiracGlass})
+    sides[static_cast<size_t>(type)] = kBothSides;
+  return sides;
+}();
+constexpr uint8_t sides_of(LobeType type) { return kSides[static_cast<size_t>(type)]; }
 constexpr bool is_dirac(LobeType type) { return type >= LobeType::DiracReflection; }
 constexpr bool is_microfacet(LobeType type) { return type >= LobeType::GgxReflection; }
 // Returns whether a lobe's bumps darken gradually where they face away from the surface.
@@ -206,7 +202,10 @@ inline constexpr float kMaxNonSpecular = 0.25f;
 // The lobes of a surface point. A caller adds lobes, calls finish(), and then evaluates and samples.
 class Closures {
  public:
-  void clear() { count_ = prepared_ = 0; }
+  void clear() {
+    count_ = prepared_ = 0;
+    transmits_ = false;
+  }
   // Returns a new lobe. If there are kMaxLobes already, the two most similar lobes are merged first.
   Lobe* add();
   // Sorts the lobes into classes by `roughness_threshold` (an alpha), removes black lobes and sets the sampling
@@ -243,6 +242,9 @@ class Closures {
   float class_probability(ScatterClass c) const { return class_probability_[static_cast<int>(c)]; }
   // Returns whether the class has lobes that are not Dirac, so that evaluate() can be non-zero.
   bool has_smooth(ScatterClass c) const { return has_smooth_[static_cast<int>(c)]; }
+
+  // Returns whether a lobe that is not Dirac transmits light.
+  bool transmits() const { return transmits_; }
 
   // Returns the number of Dirac lobes of the class.
   int dirac_count(ScatterClass c) const { return dirac_count_[static_cast<int>(c)]; }
@@ -336,6 +338,7 @@ class Closures {
   std::array<bool, kScatterClasses> has_smooth_{};
   std::array<int, kScatterClasses> dirac_count_{};
   bool ignores_wo_ = false;
+  bool transmits_ = false;
   Vec3 geometric_normal_ = Vec3(0, 0, 1);
   Vec3 smooth_normal_ = Vec3(0.0f);
   float terminator_frequency_ = 1.0f;

@@ -28,14 +28,8 @@ struct Vertex {
 
 // Returns what light sampling needs to know of a vertex whose closures are complete.
 inline light::Receiver receiver_of(const Vertex& vertex) {
-  light::Receiver receiver{vertex.point.position, vertex.light_normal(),  false,
-                           vertex.point.hit.time, vertex.point.light_set, &vertex.choice};
-  const bsdf::Closures& closures = vertex.shade.closures;
-  for (int i = 0; i < closures.count(); ++i) {
-    const bsdf::LobeType type = closures.lobe(i).type;
-    receiver.transmits |= !bsdf::is_dirac(type) && (bsdf::sides_of(type) & bsdf::kTransmits) != 0;
-  }
-  return receiver;
+  return {vertex.point.position, vertex.light_normal(),  vertex.shade.closures.transmits(),
+          vertex.point.hit.time, vertex.point.light_set, &vertex.choice};
 }
 
 }  // namespace gradus::path
