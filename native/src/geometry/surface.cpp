@@ -112,8 +112,8 @@ template <class Use>
   use(instance.placement(time, &storage));
 }
 
-// Returns for each component the float next to v in the direction of the sign of `up`, as std::nextafter does for finite
-// v; v if `up` is 0. It computes with bits instead of branches, because branch prediction fails for the signs.
+// Returns for each component the float next to v in the direction of the sign of `up`, as std::nextafter does for
+// finite v; v if `up` is 0. It computes with bits instead of branches, because branch prediction fails for the signs.
 Vec3 step_away(const Vec3& v, const Vec3& up) {
   using Floats = float __attribute__((vector_size(16)));
   using Bits = int32_t __attribute__((vector_size(16)));
