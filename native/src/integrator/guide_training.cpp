@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -18,23 +17,27 @@ namespace {
 // Random numbers of the training. Seeds of users are below 2³¹.
 constexpr uint32_t kSeed = 0xf0677569u;
 // The paths are traced in rounds through the same positions on the film. The first half of the rounds is not guided,
-// the rest is guided by what they have found. The paths of two rounds show how noisy a sample is.
+// the rest is guided by what they have found. The paths of its two rounds show whether that pays.
 constexpr uint32_t kRounds = 4;
 // Guided paths are traced if guiding pays for this share of the samples.
 constexpr float kMinShare = 0.1f;
 // Time of a ray with a guide over that without.
 constexpr double kTimeOfGuide = 1.15;
-// The render is guided if the variance of a sample times its time becomes smaller than this times that without a guide.
-// Its guide has learnt from twice as many paths as that of the rounds, and is better.
-constexpr double kMaxProduct = 1.1;
 // Number of positions on an edge of a square, to whose mean light noise is relative.
 constexpr uint32_t kLevelEdge = 8;
 // The mean of the whole film times this is added, so that dark squares do not count for most.
 constexpr double kMinLevel = 0.1;
-// This share of the positions, which differ most, does not count as noise. They would hide the others.
-constexpr double kOutliers = 1.0 / 200.0;
+// This share of the positions, where guided paths differ most, does not count. A few fireflies would hide the others.
+constexpr double kOutliers = 1.0 / 4096.0;
 
 using Samples = std::vector<guide::TrainingSample>;
+
+// What a path has found: the sum of its contributions, and an estimate of the square of that sum without a guide. With
+// contributions c by prefixes of the path whose densities are R times those without a guide, that is the sum over all
+// pairs of contributions of c·c' times the R of the shorter prefix. Weights of light sampling are taken as equal.
+struct FoundLight {
+  double light = 0.0, unguided_square = 0.0;
+};
 
 // Records the directions in which a path leaves rough surfaces, and the light that it finds behind them.
 class TrainingObserver : public path::NoObserver {
@@ -44,13 +47,14 @@ class TrainingObserver : public path::NoObserver {
   void on_path_start(const path::Sampler&, const camera::CameraSample&) {
     first_ = samples_.size();
     throughputs_.clear();
-    light_ = 0.0f;
+    found_ = {};
+    unguided_light_ = 0.0;
   }
-  // Returns the light that the path has found.
-  float light() const { return light_; }
+  const FoundLight& found() const { return found_; }
 
   void on_segment(const path::RaySource& source, const path::PathState& state, const path::Segment& segment,
                   const path::Vertex& end) {
+    ratio_ = state.ray.state.guided_ratio;
     if (source.vertex == nullptr || !is_rough(*source.event)) return;
     const Vec3& position = source.vertex->point.position;
     const bool is_surface = segment.end == path::SegmentEnd::Surface;
@@ -73,8 +77,12 @@ class TrainingObserver : public path::NoObserver {
 
   // Adds a contribution to the light of the path, and to the radiance that arrives at each of its surfaces.
   void add(const path::Contribution& c) {
-    const float light = light_ + mean_component(c.clamped);
-    if (is_finite(light)) light_ = light;
+    const double light = mean_component(c.clamped);
+    if (std::isfinite(light)) {
+      found_.light += light;
+      found_.unguided_square += light * (ratio_ * light + 2.0 * unguided_light_);
+      unguided_light_ += ratio_ * light;
+    }
     for (size_t i = 0; i < throughputs_.size(); ++i) {
       Rgb radiance(0.0f);
       for (int k = 0; k < 3; ++k)
@@ -87,7 +95,9 @@ class TrainingObserver : public path::NoObserver {
   Samples& samples_;
   size_t first_ = 0;              // sample of the path's first rough surface
   std::vector<Rgb> throughputs_;  // behind each of them
-  float light_ = 0.0f;
+  FoundLight found_;
+  double ratio_ = 1.0;           // density of the directions so far over that without a guide
+  double unguided_light_ = 0.0;  // sum of the contributions, each times the ratio at its end
 };
 
 // Positions on the film, row by row.
@@ -102,7 +112,7 @@ Grid grid_of(const GradusSettings& settings, double positions) {
 }
 
 struct Round {
-  std::vector<float> light;  // that each path has found
+  std::vector<FoundLight> found;  // by each path
   uint64_t rays = 0;
 };
 
@@ -113,7 +123,7 @@ Round trace_round(const IntegratorContext& context, const Grid& grid, uint32_t n
   const Vec2 step(float(context.settings.width) / float(grid.columns),
                   float(context.settings.height) / float(grid.rows));
   Round round;
-  round.light.resize(grid.size());
+  round.found.resize(grid.size());
   std::vector<Samples> of_row(grid.rows);
   std::vector<film::Counters> counters(grid.rows);
   tbb::parallel_for(0u, grid.rows, [&](uint32_t y) {
@@ -128,7 +138,7 @@ Round trace_round(const IntegratorContext& context, const Grid& grid, uint32_t n
       const Vec2 jitter = path::Sampler(key).get2(path::dimension::kFilm);
       key.index = number;
       tracer.li(path::Sampler(key), (Vec2(float(x), float(y)) + jitter) * step);
-      round.light[size_t(y) * grid.columns + x] = observer.light();
+      round.found[size_t(y) * grid.columns + x] = observer.found();
     }
   });
   for (Samples& row : of_row) {
@@ -149,7 +159,7 @@ std::vector<double> squared_levels(const std::array<Round, kRounds>& rounds, con
   };
   double sum = 0.0;
   for (size_t i = 0; i < grid.size(); ++i) {
-    for (const Round& round : rounds) sums[square_of(i)] += round.light[i], sum += round.light[i];
+    for (const Round& round : rounds) sums[square_of(i)] += round.found[i].light, sum += round.found[i].light;
     counts[square_of(i)] += kRounds;
   }
   const double least = kMinLevel * sum / double(grid.size() * kRounds);
@@ -159,14 +169,26 @@ std::vector<double> squared_levels(const std::array<Round, kRounds>& rounds, con
   return levels;
 }
 
-// Returns the relative variance of a path, from two rounds.
-double noise_of(const Round& a, const Round& b, const std::vector<double>& squared_levels) {
-  std::vector<double> squares(squared_levels.size());
-  for (size_t i = 0; i < squares.size(); ++i)
-    squares[i] = 0.5 * std::pow(double(a.light[i]) - b.light[i], 2) / std::max(squared_levels[i], 1e-60);
-  const size_t kept = squares.size() - size_t(kOutliers * double(squares.size()));
-  std::nth_element(squares.begin(), squares.begin() + ptrdiff_t(kept) - 1, squares.end());
-  return std::accumulate(squares.begin(), squares.begin() + ptrdiff_t(kept), 0.0) / double(kept);
+// Returns the variance of a guided path over that without a guide, both estimated by the paths of two guided rounds:
+// their differences have no part in the picture.
+double noise_ratio(const Round& a, const Round& b, const std::vector<double>& squared_levels) {
+  struct Position {
+    double guided, unguided;
+  };
+  std::vector<Position> positions(squared_levels.size());
+  for (size_t i = 0; i < positions.size(); ++i) {
+    const FoundLight &p = a.found[i], &q = b.found[i];
+    const double scale = 1.0 / std::max(squared_levels[i], 1e-60);
+    positions[i] = {0.5 * std::pow(p.light - q.light, 2) * scale,
+                    (0.5 * (p.unguided_square + q.unguided_square) - p.light * q.light) * scale};
+  }
+  const auto kept = ptrdiff_t(positions.size()) - ptrdiff_t(kOutliers * double(positions.size()));
+  std::nth_element(positions.begin(), positions.begin() + kept - 1, positions.end(),
+                   [](const Position& x, const Position& y) { return x.guided < y.guided; });
+  Position sum{};
+  for (auto p = positions.begin(); p != positions.begin() + kept; ++p)
+    sum.guided += p->guided, sum.unguided += p->unguided;
+  return sum.unguided > 0.0 ? sum.guided / sum.unguided : 1.0;
 }
 
 }  // namespace
@@ -193,11 +215,10 @@ GuideTraining train_guide(const IntegratorContext& context, uint32_t paths, cons
   }
   const ScopedThreadTimer timer(cpu);
   const std::vector<double> levels = squared_levels(rounds, grid);
-  const double noise = noise_of(rounds[0], rounds[1], levels);
-  training.noise_ratio = noise > 0.0 ? noise_of(rounds[2], rounds[3], levels) / noise : 1.0;
+  training.noise_ratio = noise_ratio(rounds[2], rounds[3], levels);
   training.time_ratio =
       kTimeOfGuide * double(rounds[2].rays + rounds[3].rays) / double(rounds[0].rays + rounds[1].rays);
-  training.pays = training.noise_ratio * training.time_ratio < kMaxProduct;
+  training.pays = training.noise_ratio * training.time_ratio < 1.0;
   if (training.pays) training.field = std::make_shared<const guide::GuidingField>(std::move(samples));
   return training;
 }

@@ -38,7 +38,7 @@ void explain(const integrator::GuideTraining& training, Reasons* chosen, Reasons
   const std::string measured = "takes a sample's variance to " + percent(training.noise_ratio) + " and its time to " +
                                percent(training.time_ratio);
   if (training.pays)
-    chosen->emplace_back("path guiding", found + measured + ", before it has learnt from the second half of them");
+    chosen->emplace_back("path guiding", found + measured);
   else if (!training.field)
     skipped->emplace_back("path guiding", found + "would reduce the variance of only " +
                                               percent(training.guided_share) + " of the samples of rough surfaces");
