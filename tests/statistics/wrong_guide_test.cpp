@@ -82,7 +82,8 @@ TEST_P(WrongGuide, AtMostDoublesTheVariance) {
   std::printf("  variance with the guide over that without: %.2f, mean %+.2f %%\n", guided / plain,
               100.0 * difference / sum);
   EXPECT_GT(guided, 1.2 * plain) << "the guide is used";
-  EXPECT_LT(guided, 2.2 * plain);  // The squared mean, by which the two differ, is a small part of the second moment.
+  // The bound is 2. With a share that is fixed for each vertex, the two kinds of walls have 2.0 and 1.8.
+  EXPECT_LT(guided, 1.7 * plain);
   // Channels of a pixel share their paths.
   EXPECT_LT(std::fabs(difference), 5.0 * std::sqrt(3.0 * (plain + guided)));
 }

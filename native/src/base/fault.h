@@ -19,6 +19,7 @@
   X(srgb_decoded_twice)                          \
   X(flat_normals_flipped)                        \
   X(further_camera_rays_count_in_full)           \
+  X(guided_paths_forget_their_density)           \
   X(edges_judge_by_own_samples)                  \
   X(random_stream_shared_by_pixels)              \
   X(cancel_missed_between_samples)               \

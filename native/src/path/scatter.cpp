@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/fault.h"
+
 namespace gradus::path {
 
 namespace {
@@ -108,7 +110,8 @@ bool scatter(const PathContext& context, const VertexSample& u, const Vertex& ve
   state->throughput *= event->factor;
   const float pdf = event->by_kind ? sample.kind.pdf : sample.pdf;
   const float unguided_pdf = event->by_kind ? sample.unguided_kind_pdf : sample.unguided_pdf;
-  if (unguided_pdf > 0.0f) state->ray.state.guided_ratio *= pdf / unguided_pdf;
+  if (unguided_pdf > 0.0f && !GRADUS_FAULT(guided_paths_forget_their_density))
+    state->ray.state.guided_ratio *= pdf / unguided_pdf;
   ++state->depth;
   state->lpe_state = context.components.next(state->lpe_state, event->scatter_class);
   leave_surface(vertex.point, sample.wi, closures.lobe(sample.lobe).pass, sample.transmitted, sample.dirac,
