@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <span>
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 namespace gradus::guide {
 namespace {
@@ -96,14 +98,46 @@ std::optional<Guide> fit_guide(Samples samples) {
   return Guide{LitPlaces(centre, all), share};
 }
 
+bool is_set(const std::atomic<bool>* stop) { return stop != nullptr && stop->load(std::memory_order_relaxed); }
+
 }  // namespace
 
-GuidingField::GuidingField(std::vector<TrainingSample> samples) {
+// A part of the samples. An inner cell is divided like a node.
+struct GuidingField::Cell {
+  explicit Cell(std::span<TrainingSample> all, const std::atomic<bool>* stop);
+
+  float split = 0.0f;
+  uint32_t axis = kLeaf;
+  std::span<const TrainingSample> samples;
+  std::unique_ptr<const Cell> below, above;
+};
+
+// Divides the samples, which it reorders.
+GuidingField::Cell::Cell(std::span<TrainingSample> all, const std::atomic<bool>* stop) : samples(all) {
+  if (all.size() <= kMaxSamples || is_set(stop)) return;
+  const Vec3 size = bounds_of(all, &TrainingSample::position).size();
+  const Vec3 normal_size = bounds_of(all, &TrainingSample::normal).size() * (kNormalScale * glm::length(size));
+  const std::array<float, 6> extents{size.x, size.y, size.z, normal_size.x, normal_size.y, normal_size.z};
+  const auto widest = uint32_t(std::max_element(extents.begin(), extents.end()) - extents.begin());
+  split = coordinate(mean_of(all, &TrainingSample::position), mean_of(all, &TrainingSample::normal), widest);
+  const auto second = std::stable_partition(all.begin(), all.end(),
+                                            [&](const TrainingSample& s) { return coordinate(s, widest) < split; });
+  const auto first = size_t(second - all.begin());
+  if (first == 0 || first == all.size()) return;
+  axis = widest;
+  tbb::parallel_invoke([&] { below = std::make_unique<const Cell>(all.first(first), stop); },
+                       [&] { above = std::make_unique<const Cell>(all.subspan(first), stop); });
+}
+
+GuidingField::GuidingField(std::vector<TrainingSample> samples, const std::atomic<bool>* stop) {
   nodes_.emplace_back();
   std::vector<Leaf> leaves;
-  divide(0, samples, &leaves);
+  add_node(0, Cell(samples, stop), &leaves);
   std::vector<std::optional<Guide>> guides(leaves.size());
-  tbb::parallel_for(size_t{0}, leaves.size(), [&](size_t i) { guides[i] = fit_guide(leaves[i].samples); });
+  tbb::parallel_for(size_t{0}, leaves.size(), [&](size_t i) {
+    if (!is_set(stop)) guides[i] = fit_guide(leaves[i].samples);
+  });
+  if (is_set(stop)) return;
   size_t guided = 0;
   for (size_t i = 0; i < leaves.size(); ++i) {
     if (!guides[i]) continue;
@@ -114,24 +148,14 @@ GuidingField::GuidingField(std::vector<TrainingSample> samples) {
   guided_share_ = samples.empty() ? 0.0f : float(guided) / float(samples.size());
 }
 
-void GuidingField::divide(uint32_t node, std::span<TrainingSample> samples, std::vector<Leaf>* leaves) {
-  nodes_[node] = {0.0f, kLeaf, kNone};
-  if (samples.size() <= kMaxSamples) return leaves->push_back({node, samples});
-  const Vec3 size = bounds_of(samples, &TrainingSample::position).size();
-  const Vec3 normal_size = bounds_of(samples, &TrainingSample::normal).size() * (kNormalScale * glm::length(size));
-  const std::array<float, 6> extents{size.x, size.y, size.z, normal_size.x, normal_size.y, normal_size.z};
-  const auto axis = uint32_t(std::max_element(extents.begin(), extents.end()) - extents.begin());
-  const float split =
-      coordinate(mean_of(samples, &TrainingSample::position), mean_of(samples, &TrainingSample::normal), axis);
-  const auto second = std::stable_partition(samples.begin(), samples.end(),
-                                            [&](const TrainingSample& s) { return coordinate(s, axis) < split; });
-  const auto below = size_t(second - samples.begin());
-  if (below == 0 || below == samples.size()) return leaves->push_back({node, samples});
+void GuidingField::add_node(uint32_t node, const Cell& cell, std::vector<Leaf>* leaves) {
+  nodes_[node] = {cell.split, cell.axis, kNone};
+  if (cell.axis == kLeaf) return leaves->push_back({node, cell.samples});
   const auto first = uint32_t(nodes_.size());
   nodes_.resize(nodes_.size() + 2);
-  nodes_[node] = {split, axis, first};
-  divide(first, samples.first(below), leaves);
-  divide(first + 1, samples.subspan(below), leaves);
+  nodes_[node].index = first;
+  add_node(first, *cell.below, leaves);
+  add_node(first + 1, *cell.above, leaves);
 }
 
 const Guide* GuidingField::at(const Vec3& position, const Vec3& normal) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -43,7 +44,8 @@ inline float guided_probability(float ratio) {
 // that reduces the variance of its samples.
 class GuidingField {
  public:
-  explicit GuidingField(std::vector<TrainingSample> samples);
+  // Ends early, and then guides nowhere, once `stop` is set; it may be null.
+  explicit GuidingField(std::vector<TrainingSample> samples, const std::atomic<bool>* stop = nullptr);
   // Returns the guide of a surface point, whose normal is on the side of the path; null in cells without one.
   const Guide* at(const Vec3& position, const Vec3& normal) const;
   // Returns the share of the samples that lie in guided cells.
@@ -63,8 +65,9 @@ class GuidingField {
     uint32_t node;
     std::span<const TrainingSample> samples;
   };
-  // Divides the samples of a node, which it reorders, into leaves.
-  void divide(uint32_t node, std::span<TrainingSample> samples, std::vector<Leaf>* leaves);
+  struct Cell;
+  // Sets a node and those below it from a cell, and appends its leaves.
+  void add_node(uint32_t node, const Cell& cell, std::vector<Leaf>* leaves);
 
   std::vector<Node> nodes_;
   std::vector<Guide> guides_;

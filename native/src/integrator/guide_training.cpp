@@ -203,7 +203,7 @@ GuideTraining train_guide(const IntegratorContext& context, uint32_t paths, cons
   for (uint32_t i = 0; i < kRounds; ++i) {
     if (i == kRounds / 2) {
       const ScopedThreadTimer timer(cpu);
-      auto field = std::make_shared<const guide::GuidingField>(samples);
+      auto field = std::make_shared<const guide::GuidingField>(samples, &stop);
       training.guided_share = field->guided_share();
       if (training.guided_share < kMinShare) return training;
       training.field = std::move(field);
@@ -219,7 +219,7 @@ GuideTraining train_guide(const IntegratorContext& context, uint32_t paths, cons
   training.time_ratio =
       kTimeOfGuide * double(rounds[2].rays + rounds[3].rays) / double(rounds[0].rays + rounds[1].rays);
   training.pays = training.noise_ratio * training.time_ratio < 1.0;
-  if (training.pays) training.field = std::make_shared<const guide::GuidingField>(std::move(samples));
+  if (training.pays) training.field = std::make_shared<const guide::GuidingField>(std::move(samples), &stop);
   return training;
 }
 

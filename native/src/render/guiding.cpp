@@ -6,8 +6,9 @@
 namespace gradus::render {
 namespace {
 
-// Paths to learn from over those of the render, and their maximum number, which finds about a thousand cells.
-constexpr double kShareOfPaths = 1.0 / 16.0, kMaxPaths = 1e6;
+// Paths to learn from over those of the render, and their maximum number, for each pixel and in all. A million finds
+// about a thousand cells.
+constexpr double kShareOfPaths = 1.0 / 16.0, kMaxPerPixel = 2.0, kMaxPaths = 1e6;
 // Fewer paths learn too little.
 constexpr double kMinPaths = 8192.0;
 // Maximum number of paths for each second of a time limit: about a tenth of what one thread traces.
@@ -19,7 +20,7 @@ constexpr double kMinRegion = 1.0 / 2.0;
 
 uint32_t guide_paths(const GradusSettings& settings, uint32_t samples, const Region& region, std::string* why_not) {
   const double pixels = double(settings.width) * settings.height;
-  double paths = std::min(pixels * samples * kShareOfPaths, kMaxPaths);
+  double paths = std::min({pixels * samples * kShareOfPaths, pixels * kMaxPerPixel, kMaxPaths});
   if (settings.time_limit > 0.0f) paths = std::min(paths, settings.time_limit * kPathsPerSecond);
   if (settings.use_guiding == 0)
     *why_not = "the setting use_guiding is off";

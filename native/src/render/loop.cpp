@@ -117,6 +117,12 @@ void RenderLoop::render() {
   develop_film(denoises);
 }
 
+// The preview is requested for the reconstruction without gradients, because the pilot may find that no gradients are
+// used.
+bool RenderLoop::quarter_is_due() const {
+  return !input_.resumed && live_view_.quarter_is_due(without_gradients(plan_));
+}
+
 void RenderLoop::learn_guide() {
   const GradusSettings& settings = input_.settings;
   std::string why_not = input_.meets_replays() ? "samples are replayed in other frames" : "";
@@ -127,6 +133,7 @@ void RenderLoop::learn_guide() {
     stats_.skipped.emplace_back("path guiding", why_not);
     return;
   }
+  if (quarter_is_due()) live_view_.show_quarter();
   const integrator::IntegratorContext context{
       input_.snapshot, camera::Camera(input_.snapshot->camera, settings.width, settings.height), settings};
   std::atomic<uint64_t> cpu{0};
@@ -143,10 +150,8 @@ GradientMap RenderLoop::choose_gradients() {
   map.share = plan_.gradients ? 1.0 : 0.0;
   if (!plan_.pilot) return map;
   const GradusSettings settings = pilot_settings(input_.settings);
-  // The preview is requested for the reconstruction without gradients, because the pilot may find that no gradients are
-  // used.
   Interruption quarter;
-  quarter.is_due = [this] { return !input_.resumed && live_view_.quarter_is_due(without_gradients(plan_)); };
+  quarter.is_due = [this] { return quarter_is_due(); };
   quarter.run = [this] { live_view_.show_quarter(); };
   const auto integrator = input_.make_integrator(settings, plan_.integrator);
   arena_.execute([&] {

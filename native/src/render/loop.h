@@ -46,6 +46,8 @@ class RenderLoop final : public RenderTask {
   void ending(GradusError code) override;
   uint64_t memory_bytes() const override;
   void prepare();
+  // Returns whether the quarter preview is due before the film takes samples.
+  bool quarter_is_due() const;
   // Learns by discarded paths where the light comes from, and guides all further paths by it if that pays.
   void learn_guide();
   // Returns the pixels with gradients, as a pilot finds them; all or no pixels if the plan has no pilot.

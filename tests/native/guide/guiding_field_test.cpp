@@ -178,6 +178,13 @@ TEST(GuidingField, InfiniteLightLeavesDensitiesFinite) {
   }
 }
 
+TEST(GuidingField, GuidesNowhereOnceItIsStopped) {
+  const std::atomic<bool> stop{true};
+  const GuidingField field(sample_floor(spot, 40000), &stop);
+  EXPECT_EQ(field.guided_share(), 0.0f);
+  EXPECT_EQ(field.at(Vec3(0.0f), kUp), nullptr);
+}
+
 TEST(GuidingField, IsDeterministic) {
   const std::vector<TrainingSample> samples = sample_floor(spot, 20000);
   const GuidingField first(samples), second(samples);

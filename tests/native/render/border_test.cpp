@@ -29,6 +29,7 @@ GradusSettings settings_of(uint32_t seed) {
   settings.seed = seed;
   settings.noise_threshold = 0.0f;
   settings.denoiser = GRADUS_DENOISER_NONE;
+  settings.use_guiding = 0;  // a small part of the frame does without
   settings.max_bounces = 4;
   settings.integrator = GRADUS_INTEGRATOR_GRADIENT;
   settings.reconstruction =

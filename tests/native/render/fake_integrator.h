@@ -134,6 +134,7 @@ inline GradusSettings small_settings(uint32_t width, uint32_t height, uint32_t s
   s.height = height;
   s.samples = samples;
   s.denoiser = GRADUS_DENOISER_NONE;
+  s.use_guiding = 0;  // it learns from paths, and the snapshot has nothing to trace them in
   s.threads = 2;
   s.noise_threshold = 0.0f;
   s.integrator = GRADUS_INTEGRATOR_GRADIENT;
