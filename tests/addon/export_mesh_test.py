@@ -70,8 +70,9 @@ def test_arrays_without_copies_are_equal(scene: bpy.types.Scene, kind: str, key:
     for i, polygon in enumerate(mesh.polygons):
         polygon.use_smooth, polygon.material_index = i % 2 == 0, i % 3
     copied, viewed = (read_mesh(mesh, frozenset({"Wanted"}), is_kept=is_kept) for is_kept in (True, False))
-    assert isinstance(viewed.positions, memoryview)
-    assert isinstance(viewed.normals, memoryview)
+    if bpy.app.version >= (4, 1):  # earlier ones store flags beside the values
+        assert isinstance(viewed.positions, memoryview)
+        assert isinstance(viewed.normals, memoryview)
     assert viewed.content_hash() == copied.content_hash()
 
 
