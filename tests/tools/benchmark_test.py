@@ -358,7 +358,7 @@ class FakeRenderers:
         return "no guiding here" if mode == "cycles-guided" else ""
 
     def render(self, mode: str, samples: int, seed: int) -> tuple[np.ndarray, dict[str, float]]:
-        known = {"path": (0.04, 1e-6), "path-guided": (0.02, 2e-6), "cycles": (0.08, 4e-6)}
+        known = {"path": (0.04, 1e-6), "path-guided": (0.032, 2e-6), "cycles": (0.08, 4e-6)}
         variance, cost = known.get(mode, (0.0, 1e-6))
         noise = np.random.default_rng(seed).normal(scale=(variance / samples) ** 0.5, size=(*self.size[::-1], 3))
         return 0.5 + noise, {"cpu": 3.0 + cost * samples * self.size[0] * self.size[1]}
@@ -387,7 +387,7 @@ def test_plain_paths_are_compared_by_variance_and_time_of_a_sample(
     table = report_module().plain_paths()[1]
     assert table.rows[0][0] == "hero"
     assert table.rows[0][1] == "0.25"
-    assert table.rows[0][5:] == ["0.13", "–", "1.00"]
+    assert table.rows[0][5:] == ["0.20", "–", "1.00"]
 
 
 def test_plain_paths_of_other_conditions_are_not_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -20,7 +20,7 @@ class Mode:
 
 def _gradus(integrator: str, reconstruction: str, denoiser: str = "NONE") -> dict[str, Any]:
     chosen: dict[str, Any] = {"integrator": integrator, "reconstruction": reconstruction, "denoiser": denoiser}
-    chosen["use_guiding"] = integrator == "AUTO"  # the others are the algorithm alone
+    chosen["use_guiding"] = reconstruction != "NONE"  # plain samples show the algorithm alone
     return chosen | {"blur_glossy": 0.0, "clamp_direct": 0.0, "clamp_indirect": 0.0}
 
 
