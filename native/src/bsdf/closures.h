@@ -48,6 +48,7 @@ enum class LobeType : uint8_t {
 
 // Bit mask of the sides of the surface to which a lobe scatters.
 enum : uint8_t { kReflects = 1, kTransmits = 2, kBothSides = 3 };
+// The sides of each LobeType, in its order.
 inline constexpr auto kSides = [] {
   std::array<uint8_t, static_cast<size_t>(LobeType::Count)> sides;
   sides.fill(kReflects);

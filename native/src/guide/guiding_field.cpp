@@ -102,7 +102,7 @@ bool is_set(const std::atomic<bool>* stop) { return stop != nullptr && stop->loa
 
 }  // namespace
 
-// A part of the samples. An inner cell is divided like a node.
+// A part of the samples while the tree is built. An inner cell has `split` and `axis` of its node; a leaf has kLeaf.
 struct GuidingField::Cell {
   explicit Cell(std::span<TrainingSample> all, const std::atomic<bool>* stop);
 

@@ -169,8 +169,8 @@ std::vector<double> squared_levels(const std::array<Round, kRounds>& rounds, con
   return levels;
 }
 
-// Returns the variance of a guided path over that without a guide, both estimated by the paths of two guided rounds:
-// their differences have no part in the picture.
+// Returns the variance of a guided path over that without a guide, both estimated by the paths of two guided rounds.
+// The two paths through a position have the same mean, so that they differ by their noise alone.
 double noise_ratio(const Round& a, const Round& b, const std::vector<double>& squared_levels) {
   struct Position {
     double guided, unguided;

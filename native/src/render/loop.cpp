@@ -127,7 +127,7 @@ void RenderLoop::learn_guide() {
   const GradusSettings& settings = input_.settings;
   std::string why_not = input_.meets_replays() ? "samples are replayed in other frames" : "";
   uint32_t samples = net_samples() > 0 ? net_samples() : settings.samples;
-  if (settings.noise_threshold > 0.0f) samples = std::min(samples, plan_.first_check);  // all may end there
+  if (settings.noise_threshold > 0.0f) samples = std::min(samples, plan_.first_check);  // all blocks may stop there
   const uint32_t paths = guide_paths(settings, samples, plan_.delivered, &why_not);
   if (paths == 0) {
     stats_.skipped.emplace_back("path guiding", why_not);
