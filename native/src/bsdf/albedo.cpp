@@ -108,16 +108,20 @@ Rgb reflected_once(const Lobe& lobe, float cosine) {
 // Whether a lobe transmits without a Fresnel term, and so reflects nothing.
 bool only_crosses(const Lobe& lobe) { return sides_of(lobe.type) == kTransmits && lobe.fresnel == FresnelType::None; }
 
+// Returns whether what a lobe transmits follows from what it reflects: its Fresnel term is not that of a dielectric.
+bool transmits_the_rest(const Lobe& lobe) {
+  return lobe.fresnel == FresnelType::Schlick || lobe.fresnel == FresnelType::FilmDielectric;
+}
+
 // Returns the single-scattering albedo of the transmission side, without the lobe's weight. For glass with a Schlick
 // term it is the dielectric albedo, scaled to the energy that the Schlick term does not reflect. `reflected` is
-// single_reflection().
+// single_reflection(), which is read if transmits_the_rest().
 Rgb single_transmission(const Lobe& lobe, float alpha, float cosine, const Rgb& reflected) {
   const GlassAlbedo glass = glass_albedo(alpha, cosine, lobe.ior);
   if (only_crosses(lobe)) {
     return Rgb(glass.crossing) * lobe.transmission_tint;
   }
-  const bool coloured = lobe.fresnel == FresnelType::Schlick || lobe.fresnel == FresnelType::FilmDielectric;
-  if (coloured && glass.transmitted > 0.0f) {
+  if (transmits_the_rest(lobe) && glass.transmitted > 0.0f) {
     const Rgb share = (Rgb(glass.reflected + glass.transmitted) - reflected) / glass.transmitted;
     return glm::clamp(share, 0.0f, 1.0f / std::max(glass.transmitted, 1e-3f)) * glass.transmitted *
            lobe.transmission_tint;
@@ -210,9 +214,9 @@ LobeAlbedo two_sided_albedo(const Lobe& lobe, float signed_cosine) {
     case LobeType::GgxGlass:
     case LobeType::BeckmannGlass: {
       const float alpha = mean_alpha(lobe);
-      const Rgb reflected = only_crosses(lobe) ? Rgb(0.0f) : single_reflection(lobe, alpha, cosine);
-      return {sides_of(lobe.type) & kReflects ? scale * reflected : Rgb(0.0f),
-              scale * single_transmission(lobe, alpha, cosine, reflected)};
+      const bool reflects = (sides_of(lobe.type) & kReflects) != 0;
+      const Rgb reflected = reflects || transmits_the_rest(lobe) ? single_reflection(lobe, alpha, cosine) : Rgb(0.0f);
+      return {reflects ? scale * reflected : Rgb(0.0f), scale * single_transmission(lobe, alpha, cosine, reflected)};
     }
     default:
       return dirac_albedo(lobe, cosine);
