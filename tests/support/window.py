@@ -47,6 +47,10 @@ class Window:
         return path
 
 
+END = 60.0
+"""Seconds within which a killed process ends, also on a machine with much other work."""
+
+
 @contextmanager
 def screen(size: Size = USUAL) -> Iterator[str]:
     """Runs an X server without a screen and yields its DISPLAY."""
@@ -72,7 +76,7 @@ def screen(size: Size = USUAL) -> Iterator[str]:
     finally:
         os.close(reader)
         server.terminate()
-        server.wait(20)
+        server.wait(END)
 
 
 @contextmanager
@@ -97,7 +101,7 @@ def blender(script: str, size: Size = USUAL) -> Iterator[Window]:
         finally:
             if process.poll() is None:
                 os.killpg(process.pid, signal.SIGKILL)
-            process.wait(20)
+            process.wait(END)
 
 
 def cache() -> Path:
