@@ -12,7 +12,7 @@ endif
 
 .DEFAULT_GOAL := help
 .PHONY: help build render render-animation test test-full test-native test-regression test-addon stress faults coverage compilers package schema format lint clean
-BENCH := $(addprefix bench-,errors quick agreement pictures speed paths profiles reconstruct animation motion host \
+BENCH := $(addprefix bench-,errors quick agreement pictures speed rooms paths profiles reconstruct animation motion host \
            designs animated-designs compare report)
 .PHONY: bench $(BENCH) picture picture-components
 
@@ -65,7 +65,8 @@ bench-errors:   ## stills: error against CPU time next to Cycles and Mitsuba: SC
 bench-quick:    ## the same for two scenes, in under five minutes
 bench-agreement: ## stills: converged images against those of Cycles and Mitsuba: SCENES=a,b WIDTH=160 REFERENCE=1024
 bench-pictures: ## stills: pictures and error maps of the project's own scenes: SCENES=hero
-bench-speed:    ## CPU time of a sample in rooms of 1 k to 2 M triangles beside Cycles: ROOMS=room-1k REPEATS=3 STARTS=1
+bench-speed:    ## the next four and the errors of the main modes, for the table of targets in the report
+bench-rooms:    ## CPU time of a sample and of start-up, rooms of 1 k to 2 M triangles: ROOMS=room-1k REPEATS=3
 bench-paths:    ## variance and CPU time of a sample in scenes next to Cycles: SCENES=a,b SPEED_WIDTH=640
 bench-profiles: ## where the time of plain paths goes: flame graphs, and the share of ray tracing: SCENES=a,b
 bench-reconstruct: ## CPU time of the reconstructions at 1920x1080: REPEATS=3

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # Runs a part of the benchmark and writes the report. Everything goes to out/bench.
 #
-# usage: bench.sh all | errors | quick | agreement | pictures | speed | paths | profiles | reconstruct | animation |
-#                 motion | host | designs | animated-designs | compare | report
+# usage: bench.sh all | errors | quick | agreement | pictures | speed | rooms | paths | profiles | reconstruct |
+#                 animation | motion | host | designs | animated-designs | compare | report
 #
 # Variables of the environment limit a part; `make help` says which part reads which:
 #   SCENES=a,b  MODES=path,auto  REFERENCE=1024  SEEDS=5  SAMPLES=4,16,64  MINUTES=60  WIDTH=160
 #   SIZE=320x180  FRAMES=24  BLUR=1  CHECKED=8 (frames that have a reference)  QUICK=1 (two animations)
 #   MEASURES=truth,flicker  REPEATS=3  LOADED=1 (the machine has other work)
 #   NAME=kitchen  STORES=a,b  REFERENCES=a,b  CROP=60,60,160,90  DESIGNS=svgf,nfor-frames
-#   ROOMS=room-1k  SPEED_WIDTH=640  STARTS=1 (start-up alone)  OLD=commit  NEW=commit
+#   ROOMS=room-1k  SPEED_WIDTH=640  OLD=commit  NEW=commit
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 part=${1:?which part? see the head of tools/bench.sh}
@@ -43,18 +43,29 @@ agreement() { run agreement.py scenes width samples=REFERENCE; }
 pictures() { run pictures.py scenes; }
 paths() { run path_tracing.py scenes width=SPEED_WIDTH minutes; }
 profiles() { run profiles.py scenes width=SPEED_WIDTH minutes; }
-speed() { run speed.py rooms width=SPEED_WIDTH repeats minutes ${STARTS:+--starts}; }
+rooms() {
+  run speed.py rooms width=SPEED_WIDTH repeats minutes
+  run speed.py rooms repeats --starts
+}
 reconstruct() { run reconstruction_time.py repeats; }
 animation() { run animation.py "${limits[@]}" size frames checked ${BLUR:+--blur} ${QUICK:+--quick}; }
 motion() { run motion.py "${limits[@]}" size frames measures repeats ${BLUR:+--blur} ${LOADED:+--loaded}; }
+speed() {
+  rooms
+  reconstruct
+  paths
+  profiles
+  MODES=path,gradient-none,path-regularized,gradient-regularized,auto,auto-denoised,cycles,cycles-denoised
+  errors
+}
 report() { run report.py; }
 
 case $part in
   all)
     set_up blender
     run host.py
+    rooms
     reconstruct
-    speed
     paths
     profiles
     errors
@@ -65,7 +76,7 @@ case $part in
     report
     exit "${differs:-0}"
     ;;
-  errors | agreement | pictures | speed | paths | profiles | reconstruct | animation | motion)
+  errors | agreement | pictures | speed | rooms | paths | profiles | reconstruct | animation | motion)
     set_up
     "$part"
     report

@@ -13,6 +13,7 @@ import pytest
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "tools" / "bench"))
 import behind  # noqa: E402
+import bounds  # noqa: E402
 import crops  # noqa: E402
 import document  # noqa: E402
 import hosts  # noqa: E402
@@ -25,6 +26,7 @@ import rooms  # noqa: E402
 import scenes  # noqa: E402
 import seeds  # noqa: E402
 import speed  # noqa: E402
+import targets  # noqa: E402
 
 RANDOM = np.random.default_rng(1)
 REFERENCE = 0.2 + RANDOM.random((24, 32, 3))
@@ -388,6 +390,28 @@ def test_plain_paths_are_compared_by_variance_and_time_of_a_sample(
     assert table.rows[0][0] == "hero"
     assert table.rows[0][1] == "0.25"
     assert table.rows[0][5:] == ["0.20", "–", "1.00"]
+    tested = {name: (text, met) for name, _, (text, met) in targets.plain_paths()}
+    times = tested["PT in scenes: CPU time per sample / Cycles ≤ 0.8"]
+    assert times == ("1 of 1; median 0.25, worst 0.25 (hero)", True)
+    assert tested["guided PT: median variance × time / Cycles ≤ 0.6"][1] is True
+    assert tested["guided PT: median variance × time / guided Cycles ≤ 0.6"] == bounds.NOT_MEASURED
+
+
+def test_values_are_tested_against_bounds() -> None:
+    values = {"a": 0.5, "b": 1.0, "c": -3.0}
+    assert bounds.every(values, 0.9) == ("2 of 3; median 0.50, worst 1.00 (b)", False)
+    assert bounds.at_least(values, -3.0) == ("3 of 3; median 0.50, lowest -3.00 (c)", True)
+    assert bounds.within(values, 1.0) == ("2 of 3; -300.0 % (c) to +100.0 % (b)", False)
+    assert bounds.median(values, 0.5) == ("0.50 over 3", True)
+
+
+def test_starts_are_those_of_the_newest_commit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(speed, "STARTS", tmp_path / "start.jsonl")
+    assert targets.start("room-2m", 0.7) == bounds.NOT_MEASURED
+    for version, mode, cpu in (("a", "path", 9.0), ("b", "path", 1.0), ("b", "cycles", 2.0)):
+        row = {"room": "room-2m", "version": version, "blender": "5.2", "mode": mode, "repeat": 0, "cpu": cpu}
+        records.append(row, speed.STARTS)
+    assert targets.start("room-2m", 0.7) == ("0.50 (0.50–0.50)", True)
 
 
 def test_plain_paths_of_other_conditions_are_not_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -84,6 +84,11 @@ def flip(image: np.ndarray, reference: np.ndarray) -> float:
     return float(flip_evaluator.evaluate(*pair, "HDR", applyMagma=False)[1])
 
 
+def mean_light(image: np.ndarray, reference: np.ndarray) -> float:
+    """Returns by how much the mean of the image exceeds that of the reference, relative to the latter."""
+    return float(image.mean() / max(reference.mean(), 1e-12)) - 1.0
+
+
 def all_errors(image: np.ndarray, reference: np.ndarray, reference_variance: np.ndarray) -> dict[str, float]:
     """Returns all measures of a still by their names in stored rows."""
     return {
@@ -93,6 +98,7 @@ def all_errors(image: np.ndarray, reference: np.ndarray, reference_variance: np.
         "log_mse": log_mse(image, reference),
         "ssim": ssim(image, reference),
         "flip": flip(image, reference),
+        "mean_light": mean_light(image, reference),
     }
 
 

@@ -72,7 +72,6 @@ def measure(room: str, width: int, repeats: int, deadline: float) -> None:
 def measure_start(room: str, repeats: int) -> None:
     """Measures the start-up of each engine and prints the medians and their ratio."""
     fixed = {"room": room} | conditions(version_of_build())
-    found: dict[str, dict[int, float]] = {mode: {} for mode in START_MODES}
     for repeat in range(repeats):
         for mode in START_MODES:
             worker = blender_worker("speed_worker.py", room, *START_SIZE)
@@ -82,11 +81,16 @@ def measure_start(room: str, repeats: int) -> None:
             finally:
                 worker.close()
             records.append(fixed | facts | {"mode": mode, "repeat": repeat} | answer, STARTS)
-            found[mode][repeat] = answer["cpu"]
+    found = starts(room)
     ours, theirs = (float(np.median(list(found[mode].values()))) for mode in START_MODES)
-    spread = ratio(*(found[mode] for mode in START_MODES))
-    text = "" if spread is None else f"{spread[0]:.2f} ({spread[1]:.2f} to {spread[2]:.2f})"
-    print(f"{room:12} start-up {ours:.2f} CPU-s, Cycles {theirs:.2f} CPU-s, ratio {text}", flush=True)
+    print(f"{room:12} start-up {ours:.2f} CPU-s, Cycles {theirs:.2f} CPU-s", flush=True)
+
+
+def starts(room: str) -> dict[str, dict[int, float]]:
+    """Returns the CPU seconds of start-ups by mode and repeat, of the commit and Blender that were measured last."""
+    rows = [row for row in records.read(STARTS) if row["room"] == room]
+    newest = [row for row in rows if all(row[name] == rows[-1][name] for name in ("version", "blender"))]
+    return {mode: {row["repeat"]: row["cpu"] for row in newest if row["mode"] == mode} for mode in START_MODES}
 
 
 def works(worker: Worker, mode: str) -> bool:

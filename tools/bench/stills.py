@@ -151,9 +151,9 @@ def main() -> None:
         "--references-only", action="store_true", help="render the references, which are not timed, and stop"
     )
     parser.add_argument("--quick", action="store_true", help="two scenes in under five minutes")
-    parser.add_argument("--width", type=int, default=320)
+    parser.add_argument("--width", type=int, default=640)
     parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--reference", type=int, default=4096, help="samples per pixel of the references")
+    parser.add_argument("--reference", type=int, default=1024, help="samples per pixel of the references")
     parser.add_argument("--samples", type=powers_of_two, default=[4, 16, 64])
     parser.add_argument("--modes", type=names_of(ERROR_MODES), default=ERROR_MODES)
     arguments = parser.parse_args()
