@@ -27,6 +27,13 @@ constexpr double kMaxMoment = 0.95;
 constexpr std::array<double, 4> kShares = {0.25, 0.5, 0.75, 1.0};
 // Densities of the samples below this count as this.
 constexpr float kMinPdf = 1e-3f;
+// Rounds that balance the weights of lobes, the share of guided directions for which they are balanced, and what is
+// added to each relative derivative, so that no lobe vanishes in a round.
+constexpr int kRounds = 4;
+constexpr double kBalancedShare = 0.5;
+constexpr float kBalancePrior = 0.1f;
+// A reflection counts as at most the mean of the others, were they this many.
+constexpr double kOthers = 63.0;
 
 float coordinate(const Vec3& position, const Vec3& normal, uint32_t axis) {
   return axis < 3 ? position[int(axis)] : normal[int(axis) - 3];
@@ -59,24 +66,77 @@ Observation observation_of(const TrainingSample& s, const Vec3& centre, float di
   return {towards / std::max(glm::length(towards), 1e-30f), distance, s.radiance * cosine / std::max(s.pdf, kMinPdf)};
 }
 
-// Returns the share of guided directions that has the least second moment of the light that a Lambert surface reflects,
-// estimated by the samples that were not used for the fit, with kUnguidedPaths as at the first vertex of a path; 0 if
-// no share reduces it enough.
+// What a Lambert surface reflects of a sample's light.
+struct Reflection {
+  const TrainingSample* sample;
+  double square;  // of the reflected light, over the density with which the direction was sampled
+  double pdf;     // density of the direction without a guide
+};
+
+// Returns those of the samples that have light.
+std::vector<Reflection> reflections_of(Samples samples) {
+  std::vector<Reflection> found;
+  for (const TrainingSample& s : samples) {
+    const double cosine = glm::dot(s.normal, s.direction), light = s.radiance * cosine;
+    if (cosine > 0.0 && light > 0.0) found.push_back({&s, light * light / std::max(s.pdf, kMinPdf), cosine * kInvPi});
+  }
+  return found;
+}
+
+// Changes the weights of the lobes towards the least second moment of what surfaces reflect, where kBalancedShare of
+// the directions are guided. Fitted to light alone, they would neglect places whose light is rare and bright. The
+// moment is a convex function of the weights. Each round multiplies a weight by the square root of the moment's
+// derivative, by which the moment falls (Yu, "Monotonic convergence of a general algorithm for computing optimal
+// designs", 2010).
+void balance(Samples samples, LitPlaces* places) {
+  std::vector<Reflection> reflections = reflections_of(samples);
+  double sum = 0.0, largest = 0.0;
+  for (const Reflection& r : reflections) sum += r.square, largest = std::max(largest, r.square);
+  for (Reflection& r : reflections) r.square = std::min(r.square, (sum - largest) / kOthers);
+  DirectionMixture mixture;
+  for (int round = 0; round < kRounds; ++round) {
+    LobeValues derivatives{};  // each times the weight
+    for (const Reflection& r : reflections) {
+      places->see_from(r.sample->position, r.sample->normal, &mixture);
+      const LobeValues parts = mixture.parts(r.sample->direction);
+      const double pdf = kBalancedShare * sum_of(parts) + (1.0 - kBalancedShare) * r.pdf;
+      const auto scale = static_cast<float>(r.square / (pdf * pdf * sum));
+      for (size_t i = 0; i < kRegisters; ++i) derivatives[i] += parts[i] * scale;
+    }
+    const float total = sum_of(derivatives);
+    if (!(total > 0.0f)) return;
+    const LobeValues shares = places->shares();
+    LobeValues factors;
+    for (size_t i = 0; i < kRegisters; ++i)
+      factors[i] = square_root(derivatives[i] / (total * shares[i]) + kBalancePrior);
+    places->reweight(factors);
+  }
+}
+
+LitPlaces fit_places(Samples samples) {
+  const Vec3 centre = mean_of(samples, &TrainingSample::position);
+  const float diagonal = std::max(glm::length(bounds_of(samples, &TrainingSample::position).size()), 1e-6f);
+  std::vector<Observation> observations;
+  observations.reserve(samples.size());
+  for (const TrainingSample& s : samples) observations.push_back(observation_of(s, centre, diagonal));
+  LitPlaces places(centre, observations);
+  balance(samples, &places);
+  return places;
+}
+
+// Returns the share of guided directions that has the least second moment of what surfaces reflect, with kUnguidedPaths
+// as at the first vertex of a path; 0 if no share reduces it enough. The samples are not those of the fit.
 float best_share(const LitPlaces& places, Samples samples) {
   std::array<double, kShares.size()> moments{};
   double plain = 0.0;
   DirectionMixture mixture;
-  for (size_t i = 1; i < samples.size(); i += 2) {
-    const TrainingSample& s = samples[i];
-    const float cosine = glm::dot(s.normal, s.direction);
-    if (!(cosine > 0.0f) || !(s.radiance > 0.0f)) continue;
-    places.see_from(s.position, s.normal, &mixture);
-    const double value = double(s.radiance) * cosine, pdf = cosine * kInvPi, guided_pdf = mixture.pdf(s.direction);
-    const double square = value * value / std::max(s.pdf, kMinPdf);
-    plain += square / pdf;
+  for (const Reflection& r : reflections_of(samples)) {
+    places.see_from(r.sample->position, r.sample->normal, &mixture);
+    const double guided_pdf = mixture.pdf(r.sample->direction);
+    plain += r.square / r.pdf;
     for (size_t k = 0; k < kShares.size(); ++k) {
       const double share = kShares[k] * (1.0 - kUnguidedPaths);
-      moments[k] += square / (share * guided_pdf + (1.0 - share) * pdf);
+      moments[k] += r.square / (share * guided_pdf + (1.0 - share) * r.pdf);
     }
   }
   const auto best = std::min_element(moments.begin(), moments.end());
@@ -86,16 +146,11 @@ float best_share(const LitPlaces& places, Samples samples) {
 // Returns the guide of a cell with these samples, if guiding pays there.
 std::optional<Guide> fit_guide(Samples samples) {
   if (samples.size() < kMinSamples) return std::nullopt;
-  const Vec3 centre = mean_of(samples, &TrainingSample::position);
-  const float diagonal = std::max(glm::length(bounds_of(samples, &TrainingSample::position).size()), 1e-6f);
-  std::vector<Observation> all, half;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    all.push_back(observation_of(samples[i], centre, diagonal));
-    if (i % 2 == 0) half.push_back(all.back());
-  }
-  const float share = best_share(LitPlaces(centre, half), samples);
+  std::vector<TrainingSample> fitted, tested;
+  for (size_t i = 0; i < samples.size(); ++i) (i % 2 == 0 ? fitted : tested).push_back(samples[i]);
+  const float share = best_share(fit_places(fitted), tested);
   if (share == 0.0f) return std::nullopt;
-  return Guide{LitPlaces(centre, all), share};
+  return Guide{fit_places(samples), share};
 }
 
 bool is_set(const std::atomic<bool>* stop) { return stop != nullptr && stop->load(std::memory_order_relaxed); }

@@ -29,7 +29,7 @@ struct Guide {
 };
 
 // Share of the paths that no vertex guides. The guide may be wrong, and light that it does not know must be found, too.
-inline constexpr float kUnguidedPaths = 0.5f;
+inline constexpr float kUnguidedPaths = 0.25f;
 // Returns the probability that a path is one of the guided ones, by Bayes' rule, if the density of its directions is
 // `ratio` times that without a guide. Where each vertex is guided with this probability, the density of a whole path is
 // kUnguidedPaths times that without a guide plus the rest times that with one. The second moment of what a path of one

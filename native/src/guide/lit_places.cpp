@@ -132,6 +132,17 @@ void LitPlaces::place(size_t lobe, const Vec3& position, float concentration, fl
   set(lobe, weight, &weight_);
 }
 
+LobeValues LitPlaces::shares() const {
+  const float inverse = 1.0f / sum_of(weight_);
+  LobeValues shares;
+  for (size_t r = 0; r < kRegisters; ++r) shares[r] = weight_[r] * inverse;
+  return shares;
+}
+
+void LitPlaces::reweight(const LobeValues& factors) {
+  for (size_t r = 0; r < kRegisters; ++r) weight_[r] *= factors[r];
+}
+
 void LitPlaces::see_from(const Vec3& p, const Vec3& normal, DirectionMixture* m) const {
   constexpr float kBelow = 0.01f;  // factor of the weight of a lobe far below the surface
   constexpr float kTiny = 1e-15f;

@@ -25,6 +25,10 @@ class LitPlaces {
   // Sets the mixture as seen from a point of a surface with the unit normal `normal`. Lobes below the surface get
   // little weight.
   void see_from(const Vec3& position, const Vec3& normal, DirectionMixture* mixture) const;
+  // Returns the weight of each lobe as a share of their sum.
+  LobeValues shares() const;
+  // Multiplies the weights by factors.
+  void reweight(const LobeValues& factors);
 
  private:
   void place(size_t lobe, const Vec3& position, float concentration, float distance, float weight);

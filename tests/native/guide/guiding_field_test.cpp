@@ -78,6 +78,24 @@ TEST(GuidingField, PointsFromTheFloorToASpotOfLight) {
   }
 }
 
+// Half of the ceiling has steady light, and the other half the same light in one of a hundred paths.
+TEST(GuidingField, PrefersRareLightOfTheSameMean) {
+  Random random(7);
+  const GuidingField field(sample_floor(
+      [&random](const Vec3& origin, const Vec3& direction, float* distance) {
+        const float x = origin.x + (*distance = (1.0f - origin.z) / direction.z) * direction.x;
+        if (x < 0.0f) return 1.0f;
+        return random.get() < 0.01f ? 100.0f : 0.0f;
+      },
+      40000));
+  ASSERT_NE(field.at(Vec3(0.0f), kUp), nullptr);
+  const guide::DirectionMixture m = seen_from(field, Vec3(0.0f), kUp);
+  double steady = 0.0, rare = 0.0;
+  for (int i = 0; i < 10000; ++i) (m.sample(random.get(), random.get2()).x < 0.0f ? steady : rare) += 1.0;
+  // Lobes that are fitted to the mean alone would take both equally often.
+  EXPECT_GT(rare, 1.5 * steady);
+}
+
 // The density of a path is a mean of those with and without a guide, however its vertices differ.
 TEST(GuidedProbability, MixesTheDensitiesOfWholePaths) {
   Random random(5);
