@@ -397,6 +397,10 @@ def test_plain_paths_are_compared_by_variance_and_time_of_a_sample(
     assert tested["guided PT: median variance × time / guided Cycles ≤ 0.6"] == bounds.NOT_MEASURED
 
 
+def test_guided_modes_bring_those_without_a_guide() -> None:
+    assert path_tracing.modes_of("cycles-guided,path") == ["path", "cycles", "cycles-guided"]
+
+
 def test_values_are_tested_against_bounds() -> None:
     values = {"a": 0.5, "b": 1.0, "c": -3.0}
     assert bounds.every(values, 0.9) == ("2 of 3; median 0.50, worst 1.00 (b)", False)

@@ -5,7 +5,8 @@ against Cycles, without denoisers.
 
 Variance needs no reference: half the squared difference of two seeds has it as its expectation. It is divided by the
 squared level of the picture, a smooth picture by Gradus, and compared at the same number of samples. The time of a
-sample is the slope of the CPU time from a quarter of the samples to all of them, so that export and build drop out.
+sample is that of the render without export and build, over the number of samples, so that learning a guide counts. The
+slope of the CPU time without a guide, from a quarter of the samples to all of them, tells what export and build take.
 Modes take turns, seed by seed. Every scene appends one row to out/bench/results/path_tracing.jsonl; a scene that is
 there is not repeated.
 """
@@ -16,6 +17,7 @@ import argparse
 import statistics
 from collections import defaultdict
 
+import modes
 import numpy as np
 import records
 import temporal_metrics
@@ -42,13 +44,17 @@ def measure(scene: Scene, arguments: argparse.Namespace) -> dict[str, dict[str, 
     found: dict[str, dict[str, list[float]]] = defaultdict(lambda: defaultdict(list))
     try:
         level = renderers.render(LEVEL, LEVEL_SAMPLES, LEVEL_SEED)[0].mean(axis=-1)
-        modes = [mode for mode in arguments.modes if works(renderers, mode, scene.name)]
+        working = [mode for mode in arguments.modes if works(renderers, mode, scene.name)]
         before: dict[str, np.ndarray] = {}
         for seed in range(arguments.seeds):
-            for mode in modes:
-                start = renderers.render(mode, few, seed)[1]["cpu"]
+            start: dict[str, float] = {}  # by engine
+            for mode in working:
                 image, answer = renderers.render(mode, samples, seed)
-                found[mode]["seconds"].append((answer["cpu"] - start) / (pixels * (samples - few)))
+                engine = modes.MODES[mode].engine
+                if mode == modes.REFERENCES[engine]:
+                    quarter = renderers.render(mode, few, seed)[1]["cpu"]
+                    start[engine] = (samples * quarter - few * answer["cpu"]) / (samples - few)
+                found[mode]["seconds"].append((answer["cpu"] - start[engine]) / (pixels * samples))
                 if mode in before:
                     noise = samples * temporal_metrics.noise_map(before[mode], image, level)
                     found[mode]["variance"].append(float(noise.mean()))
@@ -99,6 +105,13 @@ def ratios(row: Row, mode: str, peer: str) -> dict[str, float] | None:
     return found | {"work": found["seconds"] * found["variance_trimmed"]}
 
 
+def modes_of(text: str) -> list[str]:
+    """Converts names of modes ('path,cycles'), and adds the modes without a guide, each before the one with it."""
+    chosen = names_of(MODES)(text)
+    plain = {modes.REFERENCES[modes.MODES[mode].engine] for mode in chosen}
+    return [mode for mode in MODES if mode in plain.union(chosen)]
+
+
 def seeds_of(text: str) -> int:
     """Converts a number of seeds; variance needs two."""
     if int(text) < 2:
@@ -119,7 +132,7 @@ def main() -> None:
     parser.add_argument("--width", type=int, default=640)
     parser.add_argument("--samples", type=samples_of, default=16)
     parser.add_argument("--seeds", type=seeds_of, default=3)
-    parser.add_argument("--modes", type=names_of(MODES), default=list(MODES))
+    parser.add_argument("--modes", type=modes_of, default=list(MODES))
     arguments = parser.parse_args()
     bench_each(select(arguments.scenes), bench_scene, arguments)
 

@@ -214,9 +214,10 @@ void GuidingField::add_node(uint32_t node, const Cell& cell, std::vector<Leaf>* 
 }
 
 const Guide* GuidingField::at(const Vec3& position, const Vec3& normal) const {
+  // Without branches, which a processor could not predict.
+  const std::array<float, kLeaf> coordinates{position.x, position.y, position.z, normal.x, normal.y, normal.z};
   const Node* node = nodes_.data();
-  while (node->axis != kLeaf)
-    node = &nodes_[node->index + (coordinate(position, normal, node->axis) < node->split ? 0 : 1)];
+  while (node->axis != kLeaf) node = &nodes_[node->index + uint32_t(!(coordinates[node->axis] < node->split))];
   return node->index == kNone ? nullptr : &guides_[node->index];
 }
 
