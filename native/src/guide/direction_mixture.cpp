@@ -22,12 +22,6 @@ FloatLanes exponential(FloatLanes x) {
 
 }  // namespace
 
-float sum_of(const LobeValues& values) {
-  FloatLanes sum = values[0];
-  for (size_t r = 1; r < kRegisters; ++r) sum += values[r];
-  return sum_of_lanes(sum);
-}
-
 void DirectionMixture::finish() {
   const float inverse = 1.0f / sum_of(weight);
   for (size_t r = 0; r < kRegisters; ++r) {

@@ -17,7 +17,11 @@ using LobeValues = std::array<FloatLanes, kRegisters>;
 inline float get(const LobeValues& values, size_t lobe) { return values[lobe / kLanes][lobe % kLanes]; }
 inline void set(size_t lobe, float value, LobeValues* values) { (*values)[lobe / kLanes][lobe % kLanes] = value; }
 // Returns the sum over the lobes.
-float sum_of(const LobeValues& values);
+inline float sum_of(const LobeValues& values) {
+  FloatLanes sum = values[0];
+  for (size_t r = 1; r < kRegisters; ++r) sum += values[r];
+  return sum_of_lanes(sum);
+}
 
 // Lobe i has the density s·exp(κ(cos − 1)) at an angle to its axis, with s = κ/(2π(1 − exp(−2κ))).
 class DirectionMixture {

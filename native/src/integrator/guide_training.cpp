@@ -22,7 +22,7 @@ constexpr uint32_t kRounds = 4;
 // Guided paths are traced if guiding pays for this share of the samples.
 constexpr float kMinShare = 0.1f;
 // Time of a ray with a guide over that without.
-constexpr double kTimeOfGuide = 1.15;
+constexpr double kTimeOfGuide = 1.2;
 // Number of positions on an edge of a square, to whose mean light noise is relative.
 constexpr uint32_t kLevelEdge = 8;
 // The mean of the whole film times this is added, so that dark squares do not count for most.
