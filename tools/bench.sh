@@ -55,8 +55,7 @@ speed() {
   reconstruct
   paths
   profiles
-  MODES=path,gradient-none,path-regularized,gradient-regularized,auto,auto-denoised,cycles,cycles-denoised
-  errors
+  MODES=${MODES:-path,path-regularized,gradient-regularized,auto,auto-denoised,cycles,cycles-denoised} errors
 }
 report() { run report.py; }
 
