@@ -55,7 +55,8 @@ speed() {
   reconstruct
   paths
   profiles
-  MODES=${MODES:-path,path-regularized,gradient-regularized,auto,auto-denoised,cycles,cycles-denoised} errors
+  SAMPLES=${SAMPLES:-4,8,16,64} \
+    MODES=${MODES:-path,path-regularized,gradient-regularized,auto,auto-denoised,cycles,cycles-denoised} errors
 }
 report() { run report.py; }
 
