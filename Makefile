@@ -12,8 +12,8 @@ endif
 
 .DEFAULT_GOAL := help
 .PHONY: help build render render-animation test test-full test-native test-regression test-addon stress faults coverage compilers package schema format lint clean
-BENCH := $(addprefix bench-,errors quick agreement pictures speed rooms paths profiles reconstruct animation motion host \
-           designs animated-designs compare report)
+BENCH := $(addprefix bench-,errors quick agreement pictures speed rooms paths profiles reconstruct animation motion \
+           host designs animated-designs compare report)
 .PHONY: bench $(BENCH) picture picture-components
 
 help:           ## this list

@@ -50,11 +50,14 @@ rooms() {
 reconstruct() { run reconstruction_time.py repeats; }
 animation() { run animation.py "${limits[@]}" size frames checked ${BLUR:+--blur} ${QUICK:+--quick}; }
 motion() { run motion.py "${limits[@]}" size frames measures repeats ${BLUR:+--blur} ${LOADED:+--loaded}; }
-speed() {
+without_errors() {
   rooms
   reconstruct
   paths
   profiles
+}
+speed() {
+  without_errors
   SAMPLES=${SAMPLES:-4,8,16,64} \
     MODES=${MODES:-path,path-regularized,gradient-regularized,auto,auto-denoised,cycles,cycles-denoised} errors
 }
@@ -64,10 +67,7 @@ case $part in
   all)
     set_up blender
     run host.py
-    rooms
-    reconstruct
-    paths
-    profiles
+    without_errors
     errors
     animation
     MODES='' motion # it has modes of its own

@@ -14,8 +14,7 @@ def every(found: dict[str, float], maximum: float) -> Found:
         return NOT_MEASURED
     worst = max(found, key=lambda name: found[name])
     met = sum(value <= maximum for value in found.values())
-    text = f"{met} of {len(found)}; median {middle_of(found):.2f}, worst {found[worst]:.2f} ({worst})"
-    return text, met == len(found)
+    return _counted(found, met, f"worst {found[worst]:.2f} ({worst})")
 
 
 def median(found: dict[str, float], maximum: float) -> Found:
@@ -32,8 +31,7 @@ def at_least(found: dict[str, float], minimum: float) -> Found:
         return NOT_MEASURED
     lowest = min(found, key=lambda name: found[name])
     met = sum(value >= minimum for value in found.values())
-    text = f"{met} of {len(found)}; median {middle_of(found):.2f}, lowest {found[lowest]:.2f} ({lowest})"
-    return text, met == len(found)
+    return _counted(found, met, f"lowest {found[lowest]:.2f} ({lowest})")
 
 
 def within(found: dict[str, float], maximum: float) -> Found:
@@ -44,6 +42,10 @@ def within(found: dict[str, float], maximum: float) -> Found:
     met = sum(abs(value) <= maximum for value in found.values())
     text = f"{met} of {len(found)}; {100 * found[low]:+.1f} % ({low}) to {100 * found[high]:+.1f} % ({high})"
     return text, met == len(found)
+
+
+def _counted(found: dict[str, float], met: int, extreme: str) -> Found:
+    return f"{met} of {len(found)}; median {middle_of(found):.2f}, {extreme}", met == len(found)
 
 
 def middle_of(found: dict[str, float]) -> float:

@@ -70,7 +70,7 @@ def load() -> dict[str, Rows]:
 
 def newest(rows: Rows) -> Rows:
     """Returns the rows of the newest commit and Blender, of these only the ones of an idle machine if there are any."""
-    last = [row for row in rows if all(row[name] == rows[-1][name] for name in ("version", "blender"))]
+    last = records.like_last(rows, ("version", "blender"))
     return [row for row in last if is_timed([row])] or last
 
 

@@ -23,8 +23,7 @@ SAMPLES = 2
 
 def newest() -> list[records.Row]:
     """Returns the runs of the commit and Blender that were measured last."""
-    rows = records.read(RESULTS)
-    return [row for row in rows if all(row[name] == rows[-1][name] for name in ("version", "blender"))]
+    return records.like_last(records.read(RESULTS), ("version", "blender"))
 
 
 def main() -> None:

@@ -24,10 +24,14 @@ def read(file: Path) -> list[Row]:
     return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
 
 
+def like_last(rows: list[Row], setup: tuple[str, ...]) -> list[Row]:
+    """Returns the rows that agree with the last one in the columns `setup`."""
+    return [row for row in rows if all(row[name] == rows[-1][name] for name in setup)]
+
+
 def newest(rows: list[Row], setup: tuple[str, ...]) -> list[Row]:
     """Returns the last row of each scene, of those that agree with the last row of all in the columns `setup`."""
-    alike = [row for row in rows if all(row[name] == rows[-1][name] for name in setup)]
-    return list({row["scene"]: row for row in alike}.values())
+    return list({row["scene"]: row for row in like_last(rows, setup)}.values())
 
 
 def append(row: Row, file: Path) -> None:

@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import records
+from document import spread
 from records import Row
 from renderers import RefusedError, Worker, blender_worker
 from rooms import ROOMS
@@ -83,13 +84,14 @@ def measure_start(room: str, repeats: int) -> None:
             records.append(fixed | facts | {"mode": mode, "repeat": repeat} | answer, STARTS)
     found = starts(room)
     ours, theirs = (float(np.median(list(found[mode].values()))) for mode in START_MODES)
-    print(f"{room:12} start-up {ours:.2f} CPU-s, Cycles {theirs:.2f} CPU-s", flush=True)
+    over = spread(ratio(found[START_MODES[0]], found[START_MODES[1]]))
+    print(f"{room:12} start-up {ours:.2f} CPU-s, Cycles {theirs:.2f} CPU-s, ratio {over}", flush=True)
 
 
 def starts(room: str) -> dict[str, dict[int, float]]:
     """Returns the CPU seconds of start-ups by mode and repeat, of the commit and Blender that were measured last."""
     rows = [row for row in records.read(STARTS) if row["room"] == room]
-    newest = [row for row in rows if all(row[name] == rows[-1][name] for name in ("version", "blender"))]
+    newest = records.like_last(rows, ("version", "blender"))
     return {mode: {row["repeat"]: row["cpu"] for row in newest if row["mode"] == mode} for mode in START_MODES}
 
 

@@ -32,7 +32,7 @@ constexpr float kMinPdf = 1e-3f;
 constexpr int kRounds = 4;
 constexpr double kBalancedShare = 0.5;
 constexpr float kBalancePrior = 0.1f;
-// A reflection counts as at most the mean of the others, were they this many.
+// The square of a sample's light counts as at most the sum of the others over this, so that no outlier decides alone.
 constexpr double kOthers = 63.0;
 
 float coordinate(const Vec3& position, const Vec3& normal, uint32_t axis) {
