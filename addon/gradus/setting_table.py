@@ -118,8 +118,8 @@ ROWS: tuple[dict[str, Any], ...] = (
         doc=(
             "Learns from a few discarded samples where the light of rough surfaces comes from, and sends more paths"
             " there where these samples show that it pays. It helps rooms that light enters by windows, doors and "
-            "reflections. Learning takes up to 6 % of the render time, and guided paths take 10 to 20 % longer. The"
-            " viewport and previews do without"
+            "reflections. Learning takes up to 10 % of the render time, and guided samples take up to 60 % longer. "
+            "The viewport and previews do without"
         ),
     ),
     dict(

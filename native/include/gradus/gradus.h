@@ -618,8 +618,8 @@ typedef struct GradusSettings {
   uint32_t use_guiding;             /* Learns from a few discarded samples where the light of rough surfaces comes
                                        from, and sends more paths there where these samples show that it pays. It
                                        helps rooms that light enters by windows, doors and reflections. Learning
-                                       takes up to 6 % of the render time, and guided paths take 10 to 20 % longer.
-                                       The viewport and previews do without. */
+                                       takes up to 10 % of the render time, and guided samples take up to 60 %
+                                       longer. The viewport and previews do without. */
   uint32_t reconstruction;          /* GradusReconstruction: How the picture is made from the samples and their
                                        gradients. */
   float reconstruction_alpha;       /* Weight of the sampled picture against its gradients in the reconstructions L2

@@ -71,8 +71,8 @@ constexpr Option kOptions[] = {
     OPTION(use_guiding, GRADUS_OPTION_BOOL, 1, 0, 1, {}, true,
            "Learns from a few discarded samples where the light of rough surfaces comes from, and sends more paths "
            "there where these samples show that it pays. It helps rooms that light enters by windows, doors and "
-           "reflections. Learning takes up to 6 % of the render time, and guided paths take 10 to 20 % longer. The "
-           "viewport and previews do without."),
+           "reflections. Learning takes up to 10 % of the render time, and guided samples take up to 60 % longer. The"
+           " viewport and previews do without."),
     OPTION(reconstruction, GRADUS_OPTION_ENUM, 0, 0, 5, kReconstructionChoices, false,
            "How the picture is made from the samples and their gradients. auto: Regularized. With the integrator Path"
            " the sampled picture is delivered. none: Delivers the sampled picture. l2: Least squares of samples and "
