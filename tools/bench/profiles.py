@@ -29,6 +29,9 @@ RESULTS = records.file_of("profiles")
 PICTURES = "profiles"  # folder, relative to OUT
 SAMPLING = "TileSampler::sample_tile"
 RAYS = ("embree::", "rtc")  # what functions of Embree begin with
+# Bytes of the stack that each sample copies. Traversal of instances needs more than 16 KB: a stack that is cut off
+# lacks SAMPLING and does not count, so that ray tracing would seem to take less.
+STACK_BYTES = 32768
 SETUP = ("width", "version", "machine")  # columns in which rows must agree
 
 
@@ -46,7 +49,7 @@ def profile(scene: Path, samples: int) -> flame_graph.Stacks:
     """Renders a saved scene and returns the stacks of its sampling."""
     data = scene.with_suffix(".perf")
     render = [TOOL, "render", scene, "-o", scene.with_suffix(".exr"), "--samples", samples, "--threads", 1]
-    record = ["perf", "record", "-q", "-o", data, "--call-graph", "dwarf,16384", "-F", 200, "--", *render]
+    record = ["perf", "record", "-q", "-o", data, "--call-graph", f"dwarf,{STACK_BYTES}", "-F", 200, "--", *render]
     subprocess.run([str(part) for part in record], check=True, capture_output=True)
     script = ["perf", "script", "-i", str(data), "--no-inline", "-F", "ip,sym"]
     listed = subprocess.run(script, check=True, capture_output=True, text=True)
