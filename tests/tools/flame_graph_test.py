@@ -51,3 +51,11 @@ def test_widths_are_shares() -> None:
     assert widths[f"{TILE}: 100.0 %"] == flame_graph.WIDTH
     assert widths["path::shade<float>: 50.0 %"] == flame_graph.WIDTH / 2
     assert len(widths) == 4
+
+
+def test_stacks_that_were_cut_off_are_counted() -> None:
+    whole = ["1 embree::avx2::BVHNIntersector1::intersect", "2 TileSampler::sample_tile", "3 main", ""]
+    cut = ["1 embree::avx2::BVHNIntersector1::intersect", "2 embree::AccelN::intersect", ""]
+    other = ["1 malloc", "2 main", ""]
+    assert flame_graph.cut_share(whole * 3 + cut + other, "sample_tile", "Intersector") == 0.25
+    assert flame_graph.cut_share(other, "sample_tile", "Intersector") == 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from html import escape
 
 Stacks = Counter[tuple[str, ...]]  # number of samples by the functions of a stack, callers first
@@ -19,17 +19,30 @@ def parse(lines: Iterable[str], root: str) -> Stacks:
     line. Returns the stacks that contain a function whose name has `root` in it, from that function on.
     """
     stacks: Stacks = Counter()
+    for stack in _stacks(lines):
+        begin = next((i for i, name in enumerate(stack) if root in name), None)
+        if begin is not None:
+            stacks[tuple(reversed(stack[: begin + 1]))] += 1
+    return stacks
+
+
+def cut_share(lines: Iterable[str], root: str, inside: str) -> float:
+    """Returns the share of the samples taken in functions whose names have `inside` in them whose stacks lack `root`,
+    because perf copied too little of the stack or could not unwind it.
+    """
+    found = [any(root in name for name in stack) for stack in _stacks(lines) if stack and inside in stack[0]]
+    return 1.0 - sum(found) / len(found) if found else 0.0
+
+
+def _stacks(lines: Iterable[str]) -> Iterator[list[str]]:
     stack: list[str] = []
     for line in (*lines, ""):
         if line.strip():
             _, _, name = line.strip().partition(" ")
             stack.append(short(name or "unknown"))
             continue
-        begin = next((i for i, name in enumerate(stack) if root in name), None)
-        if begin is not None:
-            stacks[tuple(reversed(stack[: begin + 1]))] += 1
+        yield stack
         stack = []
-    return stacks
 
 
 def short(name: str) -> str:
