@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from functools import cache
 from html import escape
 
 Stacks = Counter[tuple[str, ...]]  # number of samples by the functions of a stack, callers first
@@ -15,8 +16,8 @@ NOISE = re.compile(r"gradus::|\(anonymous namespace\)::|\[clone [^]]*\]")
 
 
 def parse(lines: Iterable[str], root: str) -> Stacks:
-    """Reads what `perf script -F ip,sym` prints: a stack is one line for each function, callees first, and an empty
-    line. Returns the stacks that contain a function whose name has `root` in it, from that function on.
+    """Reads what `perf script -F ip,sym` prints. Returns the stacks that contain a function whose name has `root` in
+    it, from that function on.
     """
     stacks: Stacks = Counter()
     for stack in _stacks(lines):
@@ -27,14 +28,15 @@ def parse(lines: Iterable[str], root: str) -> Stacks:
 
 
 def cut_share(lines: Iterable[str], root: str, inside: str) -> float:
-    """Returns the share of the samples taken in functions whose names have `inside` in them whose stacks lack `root`,
-    because perf copied too little of the stack or could not unwind it.
+    """Reads the same, and only the stacks whose innermost function has `inside` in its name. Returns the share of them
+    that lack `root`, because perf copied too little of the stack or could not unwind it.
     """
     found = [any(root in name for name in stack) for stack in _stacks(lines) if stack and inside in stack[0]]
     return 1.0 - sum(found) / len(found) if found else 0.0
 
 
 def _stacks(lines: Iterable[str]) -> Iterator[list[str]]:
+    """Returns the names of each stack, callees first. A stack is one line for each function, and an empty line."""
     stack: list[str] = []
     for line in (*lines, ""):
         if line.strip():
@@ -45,6 +47,7 @@ def _stacks(lines: Iterable[str]) -> Iterator[list[str]]:
         stack = []
 
 
+@cache  # a profile repeats few names
 def short(name: str) -> str:
     """Returns a function's name without its parameters and without what all names have in common."""
     name = NOISE.sub("", name)

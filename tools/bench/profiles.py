@@ -32,8 +32,11 @@ RAYS = ("embree::", "rtc")  # what functions of Embree begin with
 # Bytes of the stack that each sample copies. Traversal of instances needs more than 16 KB: a stack that is cut off
 # lacks SAMPLING and does not count, so that ray tracing would seem to take less.
 STACK_BYTES = 32768
-TRAVERSAL = "Intersector"  # in the names of functions that traverse, not build
-MOST_CUT = 0.2  # share of stacks of ray tracing that may lack SAMPLING; perf cannot unwind a tenth at any size
+# Part of the names of the functions of Embree that traverse; those that build have others.
+TRAVERSAL = "Intersector"
+# Largest share of the stacks of traversal that may lack SAMPLING. About a tenth cannot be unwound, however large the
+# copies are.
+MOST_CUT = 0.2
 SETUP = ("width", "version", "machine")  # columns in which rows must agree
 
 
